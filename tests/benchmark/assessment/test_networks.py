@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from benchmark import datasets
 from benchmark.assessment import networks
 from benchmark.datasets.conditions.flight import FlightPreset
-from benchmark.datasets.preset import Preset
 
 PRESET = datasets.get(networks.ALBEDO_ORBIT)
 
@@ -73,42 +70,6 @@ def test_seeds_and_units_are_all_measured():
     assert found[0].rms_deg != found[1].rms_deg
     # gains of another unit are none that the network was trained on
     assert found[2].rms_deg > found[3].rms_deg
-
-
-def test_errors_count_lit_samples_that_were_answered(parts):
-    _, asked = parts
-    part = replace(
-        asked,
-        sun=np.tile([0.0, 0.0, 1.0], (4, 1)),
-        lit=np.array([True, True, False, True]),
-    )
-    ten = np.array([np.sin(np.radians(10.0)), 0.0, np.cos(np.radians(10.0))])
-    found = np.array([ten, [0.0, 0.0, 1.0], ten, [np.nan] * 3])
-    row = networks._measure("orbits", "case", "method", found, part)
-    assert row.rms_deg == pytest.approx(np.sqrt(50.0))
-    assert row.max_deg == pytest.approx(10.0)
-    assert row.answered == pytest.approx(2.0 / 3.0)
-    assert "rms 7.0711" in networks.line(row)
-    none = networks._measure("orbits", "case", "method", np.full((4, 3), np.nan), part)
-    assert np.isnan(none.rms_deg)
-    assert none.answered == 0.0
-
-
-def test_spans_fly_the_same_orbit_for_other_times(monkeypatch):
-    flown = []
-
-    def seen(preset: Preset, condition: str):
-        assert isinstance(preset, FlightPreset)
-        flown.append((preset.flight.calibration.samples, preset.flight.test.start_day))
-        return networks.Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool)), asked
-
-    asked = networks.Part(np.ones((2, 4)), np.eye(3)[[2, 2]], {}, np.ones(2, bool))
-    monkeypatch.setattr(networks, "parts", seen)
-    stay = {name: lambda geometry, known, asked: asked.sun for name in networks.METHODS}
-    monkeypatch.setattr(networks, "METHODS", stay)
-    rows = list(networks.spans(trained_days=(0.5, 2.0), tested_days=(7.0,)))
-    assert flown == [(1440, 7.0), (5760, 7.0)]
-    assert [row.rms_deg for row in rows] == [0.0] * 4
 
 
 @pytest.mark.slow

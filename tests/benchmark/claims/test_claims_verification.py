@@ -72,12 +72,6 @@ def test_what_cannot_be_is_said_by_check_and_ledger(
     assert dict(list_due(Claims(directory)))[QUICK]
 
 
-def test_rules_that_were_not_measured_are_said_once_and_nothing_else_is_looked_at() -> None:
-    claim, outcome = claims()[QUICK], read_outcomes()[QUICK]
-    (said,) = contradictions(claim, replace(outcome, values={"other": (1.0,)}))
-    assert said.startswith("values: expected those of ")
-
-
 @pytest.mark.parametrize(
     ("values", "second", "said"),
     [

@@ -12,7 +12,6 @@ from benchmark.claims.experiments.frames.c46_hough_circle import corrupt
 from benchmark.claims.experiments.frames.single_discs import (
     RADIUS_PX,
     Spots,
-    error_px,
     errors_px,
     single,
 )
@@ -63,21 +62,6 @@ def test_basic_centroids_error_is_that_of_summed_noise(drawn: Spots) -> None:
     lever = [np.mean((pixels - c) ** 2) * size**2 for c in many.centres.ravel()]
     wanted = share * math.sqrt(float(np.mean(lever))) / (math.pi * RADIUS_PX**2)
     assert error == pytest.approx(wanted, rel=0.1)
-
-
-def test_errors_are_of_the_answered_and_none_where_most_are_not() -> None:
-    truth = np.zeros((4, 2))
-    found = np.array([[3.0, 4.0], [3.0, 4.0], [3.0, 4.0], [np.nan, np.nan]])
-    assert error_px(found, truth) == pytest.approx(math.sqrt(12.5))
-    found[2] = np.nan
-    assert math.isnan(error_px(found, truth))
-
-
-def test_trials_and_claims_draw_their_own(drawn: Spots) -> None:
-    again = single("test", 0, frames=20)
-    np.testing.assert_array_equal(again.frames(0.1), drawn.frames(0.1))
-    for other in (single("test", 1, frames=20), single("other", 0, frames=20)):
-        assert not np.allclose(other.centres, drawn.centres)
 
 
 def test_two_thirds_of_the_corruption_are_lost_and_one_is_a_glint() -> None:

@@ -3,7 +3,6 @@
 import dataclasses
 import functools
 import math
-from collections import Counter
 
 import pandas as pd
 import pytest
@@ -11,8 +10,7 @@ import pytest
 import survey_data
 from benchmark.claims import rules as claim_rules
 from benchmark.claims.experiment import Trial, find_experiments
-from benchmark.claims.judgement import judge
-from benchmark.claims.ledger import LedgerError, ledger, tally, unexplained_claims
+from benchmark.claims.ledger import LedgerError, ledger, unexplained_claims
 from benchmark.claims.outcomes import (
     RECORD,
     OutcomeError,
@@ -22,7 +20,6 @@ from benchmark.claims.outcomes import (
     row_of,
 )
 from benchmark.claims.rules import DIRECTORY, VERDICTS, claims
-from benchmark.experiments.__main__ import main
 from benchmark.experiments.claims import Claims
 from benchmark.results.csv_tables import StoreError
 
@@ -84,18 +81,6 @@ def test_verdicts_follow_from_the_published_numbers():
 
 def test_what_is_not_reproduced_is_explained():
     assert unexplained_claims(ledger()) == ()
-
-
-def test_a_second_method_is_named():
-    for entry in ledger():
-        assert bool(entry.second) == bool(entry.claim.second and entry.outcome)
-
-
-def test_tally_counts_every_claim_once():
-    entries = ledger()
-    assert sum(tally(entries).values()) == 55
-    counted = Counter(entry.verdict for entry in entries)
-    assert all(tally(entries)[name] == counted[name] for name in VERDICTS)
 
 
 def test_an_outcome_is_read_as_it_was_written(tmp_path):
@@ -167,42 +152,6 @@ def test_an_explanation_of_another_verdict_is_refused(tmp_path):
         ledger(tmp_path, said)
 
 
-def test_what_was_not_measured_says_so(tmp_path):
-    said = tmp_path / "explanations.csv"
-    said.write_text("claim,verdict,says\n")
-    entries = ledger(tmp_path, said)
-    assert tally(entries)["not measured"] == 55
-    assert unexplained_claims(entries) == ()
-
-
-@pytest.mark.slow
-def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
-    low = {"little": 0.5, "before": 2.0}
-    made = [dataclasses.replace(trial, second=low) for trial in trials()]
-    keep(tmp_path, made)
-    said = tmp_path / "explanations.csv"
-    said.write_text("claim,verdict,says\n")
-    (entry,) = (e for e in ledger(tmp_path, said) if e.claim.id == "C04")
-    assert entry.agrees is False
-    assert judge(entry.claim.rule("little"), [0.5] * 6).result == "fails"
-
-
-@pytest.mark.slow
-def test_only_what_is_asked_for_is_measured(tmp_path, monkeypatch, capsys):
-    row = row_of(outcome_of(claims()["C04"], trials()))
-    monkeypatch.setattr(Claims, "measure", staticmethod(lambda name: [(name, row)]))
-    call = ["claims", "--directory", str(tmp_path)]
-    assert main([*call, "C04"]) == 0
-    assert list(RECORD.read(tmp_path)) == ["C04"]
-    assert main([*call, "--check"]) == 1
-    said = capsys.readouterr().out
-    assert "claims C05: absent" in said
-    assert "C04" not in said
-    with pytest.raises(SystemExit):
-        main([*call, "C044"])
-    assert "did you mean" in capsys.readouterr().err
-
-
 def test_rules_that_no_claim_has_are_refused(tmp_path, monkeypatch):
     for name in ("rules.csv", "trials.csv"):
         (tmp_path / name).write_text((DIRECTORY / name).read_text())
@@ -210,23 +159,4 @@ def test_rules_that_no_claim_has_are_refused(tmp_path, monkeypatch):
         file.write("C99,a,Something,linear,>,1,,\n")
     monkeypatch.setattr(claim_rules, "DIRECTORY", tmp_path)
     with pytest.raises(claim_rules.RulesError, match="C99"):
-        claim_rules.claims.__wrapped__()
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("C04,little", "C04,before", "two rules of one name"),
-        ("log,>=,0.9,,", "log,=>,0.9,,", "expected one of"),
-        ("log,>=,0.9,,", "log,within,0.9,,", "needs an upper limit"),
-    ],
-)
-def test_a_rule_that_cannot_be_read_is_named(tmp_path, monkeypatch, old, new, said):
-    for name in ("rules.csv", "trials.csv"):
-        (tmp_path / name).write_text((DIRECTORY / name).read_text())
-    text = (tmp_path / "rules.csv").read_text()
-    start = text.index("C04,little")
-    (tmp_path / "rules.csv").write_text(text[:start] + text[start:].replace(old, new, 1))
-    monkeypatch.setattr(claim_rules, "DIRECTORY", tmp_path)
-    with pytest.raises(claim_rules.RulesError, match=said):
         claim_rules.claims.__wrapped__()

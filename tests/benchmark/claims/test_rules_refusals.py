@@ -10,7 +10,7 @@ import pytest
 
 from benchmark.claims import rules
 from benchmark.claims.ledger import LedgerError, ledger
-from benchmark.claims.rules import DIRECTORY, RulesError, claims, rows_of
+from benchmark.claims.rules import DIRECTORY, RulesError, claims
 
 
 @pytest.fixture
@@ -47,28 +47,6 @@ def test_a_table_that_cannot_decide_claims_is_refused_by_name(
     tables(name, old, new)
     with pytest.raises(RulesError, match=said):
         claims.__wrapped__()
-
-
-def test_tables_as_they_are_are_read(tables: Callable[[str, str, str], None]) -> None:
-    tables("trials.csv", r"^(C04,[^,]*),[^,]*", r"\1,5")
-    assert claims.__wrapped__()["C04"].trials == rules.FEWEST_TRIALS
-
-
-def test_a_claim_names_its_rules_where_one_is_asked_for_that_it_has_not() -> None:
-    claim = claims()["C04"]
-    assert claim.rule("little").name == "little"
-    with pytest.raises(RulesError, match="C04 has no rule 'much'; it has little, before"):
-        claim.rule("much")
-
-
-def test_a_table_without_the_columns_asked_for_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "three.csv"
-    path.write_text("claim,verdict,says\nC04,refuted,No.\n")
-    assert rows_of(path, ("claim", "verdict", "says")) == [
-        {"claim": "C04", "verdict": "refuted", "says": "No."}
-    ]
-    with pytest.raises(RulesError, match=r"three\.csv"):
-        rows_of(path, ("claim", "says"))
 
 
 def test_two_explanations_of_one_claim_are_refused(tmp_path: Path) -> None:

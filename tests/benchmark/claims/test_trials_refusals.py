@@ -13,27 +13,16 @@ import pytest
 from algorithms.contract import AboutModel, FeatureKind, SensorGeometry
 from benchmark import datasets
 from benchmark.claims.experiments.coarse import c18_interference as c18
-from benchmark.claims.experiments.coarse import c26_worst_of_albedo as c26
 from benchmark.claims.experiments.frames import c44_black_sun as c44
 from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.conditions.cone import ConeField
-from benchmark.datasets.fields import SphereField
-from benchmark.datasets.standard import ccd_lens, ltf_maskless_cube, pd_maskless_pyramid
+from benchmark.datasets.standard import ccd_lens, pd_maskless_pyramid
 
 
 def test_a_camera_without_a_black_sun_has_no_centre_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(c44, "PRESET", ccd_lens.PRESET)
     with pytest.raises(TypeError, match="ccd-lens has no black Sun; got BloomingSensor"):
         c44.trial(1000)
-
-
-def test_the_worst_of_albedo_is_searched_on_bare_photodiodes_alone(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    preset = dataclasses.replace(ltf_maskless_cube.PRESET, directions=SphereField(80, 80))
-    monkeypatch.setattr(c26, "SENSORS", ((preset, 180.0),))
-    with pytest.raises(TypeError, match="faces without a mask are searched; got FrequencySensor"):
-        c26.trial(1000)
 
 
 @dataclass

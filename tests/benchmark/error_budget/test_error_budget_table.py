@@ -4,7 +4,7 @@ import pytest
 
 from benchmark.error_budget import sentences
 from benchmark.error_budget.record import RECORD
-from benchmark.error_budget.variants import SINGLE, VARIANTS
+from benchmark.error_budget.variants import VARIANTS
 from benchmark.experiments.error_budget import ErrorBudget, leaders
 from benchmark.results.store import Store
 
@@ -110,11 +110,6 @@ def test_what_is_near_its_bound_has_no_leading_part():
     assert not any(name in found.sentence for name in sentences.PARTS.values())
 
 
-def test_the_bound_is_that_of_a_known_unit_where_there_is_no_other():
-    assert sentences.bound_of(_row()) == 0.005
-    assert sentences.bound_of(_row() | {"bound_unit_deg": None}) == 0.004
-
-
 def test_the_leader_is_chosen_over_its_units():
     plain = {"dataset": "d", "condition": "c", "extractor": "e", "availability": 1.0}
 
@@ -128,19 +123,3 @@ def test_the_leader_is_chosen_over_its_units():
     assert leaders(rows, {"d": "c"})["d"]["model"] == "steady"
     assert leaders(rows, {"d": "c"})["d"]["rms_deg"] == 2.0
     assert leaders(rows, {"d": "other"}) == {}
-
-
-@pytest.mark.parametrize(
-    ("errors", "parts"),
-    [
-        ({"perfect": None, "perfect_dense": None}, set(VARIANTS)),
-        ({"perfect_dense": None, "places": 0.02}, {"extractor", "model"}),
-        ({"perfect_dense": None, "places": None}, {"method"}),
-        ({"places_dense": None}, {"poses", "method"}),
-        ({"places_dense": 0.02}, {"poses", "extractor", "model"}),
-    ],
-)
-def test_only_what_was_measured_contributes(errors, parts):
-    found = sentences.contributions(_row(**{"perfect": 0.04, "perfect_dense": 0.03, **errors}))
-    assert {*found} - {*SINGLE} == parts - {*VARIANTS}
-    assert {*found} >= {*SINGLE} - {"surroundings"}

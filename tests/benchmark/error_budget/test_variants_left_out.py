@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -25,7 +24,6 @@ from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Preset
 from benchmark.error_budget import measure, perfected
 from benchmark.error_budget.measure import directions, score_variants
-from benchmark.error_budget.perfected import Still
 from benchmark.error_budget.variants import VARIANTS
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 
@@ -144,15 +142,6 @@ def test_a_lens_camera_on_a_perfect_bench_has_neither_references_nor_a_lamp() ->
     assert 0.0 < places < 0.5 * perfect, "blooming moves the spots that are found"
 
 
-def test_an_orbit_without_drift_loses_its_earth_alone() -> None:
-    preset = datasets.get("qpd-orbit")
-    before = preset.condition("nominal")
-    calm = perfected.without_surroundings(preset, "nominal")
-    assert calm is not None
-    assert before.earth is not None
-    assert calm.condition("nominal") == dataclasses.replace(before, earth=None)
-
-
 def test_the_place_behind_a_lens_is_the_image_of_the_sun_s_centre() -> None:
     preset = datasets.get("cmos-lens")
     sensor = preset.condition("nominal").sensor
@@ -165,12 +154,3 @@ def test_the_place_behind_a_lens_is_the_image_of_the_sun_s_centre() -> None:
     assert np.isnan(places[3]).all()
     seen = np.arange(len(sun)) != 3
     np.testing.assert_allclose(sensor.camera.sun_of(places[seen]), sun[seen], atol=1e-12)
-
-
-def test_nothing_random_is_the_median_of_what_is_drawn() -> None:
-    still = Still()
-    assert (still.standard_normal((2, 3), np.float32) == np.zeros((2, 3), np.float32)).all()
-    assert (still.random((2, 3)) == np.full((2, 3), 0.5)).all()
-    assert still.poisson(np.array([0.3, 7.0])).tolist() == [0.3, 7.0]
-    halves = still.bit_generator.random_raw(5).view(np.uint32)
-    assert (halves / 2.0**32).tolist() == [0.5] * 10

@@ -22,7 +22,6 @@ from benchmark.learning_curves.record import RECORD
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.components import current
-from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import Store
 from benchmark.running.experiment import list_due, update
 
@@ -122,13 +121,6 @@ def test_flights_are_told_in_order_and_end_with_all_poses():
     assert row["floor_low_deg"] is None
 
 
-def test_all_draws_share_the_whole_split_and_units_differ(learnt):
-    whole = learnt.rms_deg[:, :, -1]
-    assert (whole == whole[:, :1]).all()
-    assert whole[0, 0] != whole[1, 0]
-    assert len({*learnt.rms_deg[:, :, 5].ravel()}) == len(UNITS) * DRAWS
-
-
 def scored(**errors):
     """Rows of a board by model; what answers too rarely or is of another condition is none."""
     plain = {"dataset": "d", "condition": "c", "unit": 0, "extractor": "e", "availability": 1.0}
@@ -218,12 +210,3 @@ def test_what_is_of_other_code_data_or_leaders_is_named_and_renewed_alone(store)
     assert {leader.dataset for leader, _ in list_due(LearningCurves(store, changed))} == {
         "fake-other"
     }
-
-
-def test_a_file_of_something_else_is_named(tmp_path):
-    assert RECORD.read(tmp_path) == {}
-    path = tmp_path / RECORD.name
-    for text in ("[", "[]", '{"schema": 2, "curves": [{"dataset": "d"}]}', '{"schema": 1}'):
-        path.write_text(text)
-        with pytest.raises(StoreError, match=r"curves\.json"):
-            RECORD.read(tmp_path)

@@ -5,7 +5,6 @@ import pytest
 
 from benchmark.learning_curves.draws import LADDER, sizes, subsets
 from benchmark.learning_curves.floor import NEAR, floor_of, reached_from
-from benchmark.learning_curves.reading import half_of
 
 STEPS = sizes(441)
 
@@ -137,14 +136,6 @@ def test_poses_needed_follow_from_the_law():
     assert reached_from((4, 6, 9), [True, True, True]) == 4
     with pytest.raises(ValueError, match=r"shape \(2,\)"):
         reached_from((4, 6), [True])
-
-
-def test_half_of_the_draws():
-    assert half_of([4, 6, 9, 13]) == 6
-    assert half_of([9, None, 4]) == 9
-    assert half_of([9, None, None]) is None
-    with pytest.raises(ValueError, match="empty"):
-        half_of([])
 
 
 def test_wrong_shapes_are_refused():

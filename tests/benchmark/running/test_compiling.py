@@ -7,13 +7,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-from algorithms.contract import Observation
-from benchmark.running import compiling
 from benchmark.running.compiling import compile_kernels
 
 PARTS = """
@@ -74,29 +70,3 @@ print(json.dumps([hits, misses]))
 def test_no_workers_compile_nothing() -> None:
     with pytest.raises(ValueError, match=r"workers.*1.*0"):
         compile_kernels(0)
-
-
-def test_an_extractor_reads_data_sets_until_it_finds_something_in_one() -> None:
-    read = []
-
-    def reader(geometry: str) -> SimpleNamespace:
-        def measure(seen: np.ndarray) -> SimpleNamespace:
-            read.append((geometry, seen.dtype.name, seen.flags.writeable))
-            return SimpleNamespace(features=np.full((2, 2), 1.0 if geometry == "fits" else np.nan))
-
-        return SimpleNamespace(measure=measure)
-
-    def preset(geometry: str) -> SimpleNamespace:
-        return SimpleNamespace(
-            conditions=("nominal", "noisy"),
-            generate=lambda condition, split, n: SimpleNamespace(
-                observations=np.full((2, 5, 5), 4095, dtype=np.uint16)
-            ),
-            geometry=geometry,
-            observation=Observation.FRAMES,
-        )
-
-    extractor = SimpleNamespace(for_sensor=reader)
-    compiling._Reading(extractor, ((preset("empty"), preset("fits"), preset("spare")),))()
-    arrays = ("uint16", True), ("float64", True), ("uint16", False)
-    assert read == [(name, *array) for name in ("empty", "fits") for array in arrays]

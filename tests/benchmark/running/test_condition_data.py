@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 from fake_atlas import Currents, Diodes, FakeBound, FakeSamples
 
-from algorithms.extractors.frames.multi_spot.pattern_memory import found_once, shared_patterns
 from algorithms.references import ReferenceCorrection
 from benchmark.running import condition_data, readings
 from benchmark.running.stages import ConditionData, RenderedData
-from benchmark.simulator.light.memory import memory
 
 BY = ReferenceCorrection(np.array([1.0, 2.0, 3.0, 4.0]), np.array([11.0, 32.0, 13.0, 24.0]))
 READ = np.arange(40.0).reshape(10, 4) + 20.0
@@ -61,16 +59,6 @@ def test_readings_are_corrected_at_once_where_memory_allows(
     assert not observations.flags.writeable
 
 
-def test_what_one_method_finds_in_corrected_readings_another_need_not_search() -> None:
-    preset: Any = Diodes()
-    data = readings.correct_readings(RenderedData(read(), BY), preset)
-    observations, searches = np.asarray(data.splits["test"].observations), []
-    with shared_patterns():
-        for _ in range(2):
-            found_once(observations, "settings", lambda: searches.append("search"))
-    assert searches == ["search"]
-
-
 def test_bounds_of_who_does_not_know_the_unit_stand_where_there_are_any() -> None:
     class Known(Diodes):
         def bound(self, condition: str, split: str = "test", n: int | None = None) -> FakeBound:
@@ -84,24 +72,3 @@ def test_bounds_of_who_does_not_know_the_unit_stand_where_there_are_any() -> Non
     assert data.bound_deg is not None
     np.testing.assert_array_equal(data.bound_unit_deg, 1.5 * data.bound_deg)
     assert rendered(Known(n=40)).bound_unit_deg is None
-
-
-@pytest.mark.parametrize(("room", "stays"), [(10**9, True), (0, False)])
-def test_light_gives_way_to_frames_that_take_much_memory(
-    monkeypatch: pytest.MonkeyPatch, room: int, stays: bool
-) -> None:
-    preset: Any = Diodes(n=40)
-    monkeypatch.setattr(condition_data, "_FRAME_BYTES", room)
-    monkeypatch.setattr(condition_data, "_LIGHT_BYTES", 0)
-    monkeypatch.setattr(condition_data, "LIMIT_BYTES", 16 * 100)
-    monkeypatch.setattr(memory, "limit_bytes", 16 * 100)
-    memory.cache_for((preset.name, 0), preset.name)
-    memory.render("light", lambda: np.ones(100))
-    assert memory.kept_bytes == 800
-    with_light = condition_data.render(preset, "quiet", 0, all_observable=False)
-    assert (memory.kept_bytes == 800) is stays
-    memory.forget()
-    without = condition_data.render(preset, "quiet", 0, all_observable=False)
-    for split, samples in with_light.data.splits.items():
-        np.testing.assert_array_equal(samples.observations, without.data.splits[split].observations)
-    memory.forget()

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 from pydantic import BaseModel
 
-from benchmark.contract import UnknownNameError
 from benchmark.experiments import __main__ as command
 from benchmark.progress import silent
 from benchmark.results.csv_tables import StoreError
@@ -20,7 +19,6 @@ from benchmark.running import experiment as running
 from benchmark.running.experiment import (
     RecordedExperiment,
     Report,
-    experiments,
     list_due,
     repeat_at_random,
     update,
@@ -93,12 +91,6 @@ def test_a_number_that_another_run_does_not_repeat_is_named(tmp_path: Path) -> N
     assert re.fullmatch(r"square\b.*\b9\.1\b.*\b9\.0", said)
 
 
-def test_cells_are_asked_for_by_name(tmp_path: Path) -> None:
-    assert Squares(tmp_path).cells_named(["3", "1"]) == ["1", "3"]
-    with pytest.raises(UnknownNameError, match="squares"):
-        Squares(tmp_path).cells_named(["nine"])
-
-
 @pytest.mark.parametrize(
     ("edit", "said"),
     [
@@ -146,13 +138,6 @@ def test_a_report_is_printed_and_its_exit_code_says_whether_it_passed(
     assert capsys.readouterr().out == "1 and itself are 2\n"
     assert command.main(["sums"]) == 1
     assert "2 and itself are 4" in capsys.readouterr().out
-
-
-def test_every_module_of_the_folder_is_an_experiment() -> None:
-    found = experiments()
-    recorded = {name for name, kind in found.items() if issubclass(kind, RecordedExperiment)}
-    assert recorded == {"claims", "error_budget", "learning_curves", "sweeps"}
-    assert found.keys() - recorded == {"networks", "selection"}
 
 
 def test_calls_that_make_no_sense_are_refused(

@@ -7,10 +7,9 @@ import fake_atlas
 import fake_plan
 import pytest
 
-from benchmark.contract import ON_BENCH, Cell
+from benchmark.contract import ON_BENCH
 from benchmark.plan import combinations as plan
 from benchmark.results import components as components_of
-from benchmark.results.components import current
 from benchmark.results.digests import stage_digests
 from benchmark.results.stage_files import LIMIT_GB
 from benchmark.results.store import Store
@@ -211,20 +210,3 @@ def test_nothing_is_kept_where_the_limit_is_none(store, monkeypatch):
     measured(store, known)
     assert not (store.work_directory / "stages").exists()
     assert planned(wanted(known), [store], parts=known).stages == StageCounts(0, 0, 0, 0)
-
-
-def test_what_is_to_be_done_is_counted_without_kept_stages(store):
-    known = parts(presets=(DIODES,))
-    cells = wanted(known)
-    found = planned(cells, [store], parts=known).stages
-    places = {(cell.condition.replace(ON_BENCH, "quiet"), cell.unit) for cell in cells}
-    looks = {(*place, cell.extractor) for place in places for cell in cells}
-    assert found == StageCounts(len(places), len(looks), len(cells), len(cells))
-
-
-def test_the_key_of_data_is_shared_by_drawn_benches():
-    known = parts(presets=(DIODES,))
-    now = current(known)
-    assert now.cell_key(Cell("fake-diodes", ON_BENCH, "fake-gaps", "fake-least-squares")) == (
-        now.cell_key(Cell("fake-diodes", "quiet", "fake-gaps", "fake-least-squares"))
-    )

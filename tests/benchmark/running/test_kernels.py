@@ -1,9 +1,7 @@
 """Measuring as an older processor would: what the limited process is given, and what it finds."""
 
 import json
-import os
 import platform
-import signal
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -13,7 +11,6 @@ import pytest
 from benchmark.running import kernels
 from benchmark.running.kernels import (
     NoOlderKernelsError,
-    OlderRunError,
     older_environment,
     update_with_older_kernels,
 )
@@ -43,11 +40,6 @@ print(json.dumps({
     "numba": numba.config.CPU_NAME,
 }))
 """
-
-
-@pytest.fixture
-def x86(monkeypatch):
-    monkeypatch.setattr(platform, "machine", lambda: "x86_64")
 
 
 @pytest.fixture
@@ -83,27 +75,6 @@ def test_every_library_does_as_it_is_told():
     later = set(kernels._beyond_avx2())
     assert not later & set(found["numpy"])
     assert not [name for name in found["opencv"] if name.startswith("AVX512-")]
-
-
-@pytest.mark.usefixtures("x86")
-@pytest.mark.parametrize("workers", [1, 3])
-def test_the_record_is_updated_by_a_process_with_that_environment(tmp_path, called, workers):
-    update_with_older_kernels(tmp_path, workers)
-    [(call, options)] = called[0]
-    assert call == [sys.executable, "-m", "benchmark.leaderboard", str(tmp_path), str(workers)]
-    assert options["env"] == {**older_environment(), "SUNATLAS_COORDINATOR": str(os.getpid())}
-
-
-@pytest.mark.usefixtures("x86")
-@pytest.mark.parametrize(
-    ("code", "error"),
-    [(1, OlderRunError), (-signal.SIGKILL, OlderRunError), (-signal.SIGINT, KeyboardInterrupt),
-     (130, KeyboardInterrupt), (143, KeyboardInterrupt)],
-)  # fmt: skip
-def test_a_process_that_ends_badly_is_an_error(tmp_path, called, code, error):
-    called[1].returncode = code
-    with pytest.raises(error):
-        update_with_older_kernels(tmp_path, 1)
 
 
 def test_another_family_of_processors_is_told_before_anything_starts(tmp_path, called, monkeypatch):

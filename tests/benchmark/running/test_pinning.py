@@ -99,18 +99,6 @@ def test_a_pin_says_what_was_generated(store):
         assert pin.head_bound_deg is None, "the first samples of the test split are dark"
 
 
-@pytest.mark.slow
-def test_a_pin_carries_the_bound_of_the_test_split_and_of_its_head(store):
-    preset = datasets.get("oi-maskless-pyramid")
-    update(store, parts=_some("oi-maskless-pyramid"))
-    for condition in preset.conditions:
-        pin = store.pins()[preset.name, condition, "test"]
-        assert pin.bound_deg == pytest.approx(preset.bound(condition).rms_deg, rel=1e-4)
-        head = preset.bound(condition, n=HEAD)
-        assert pin.head_bound_deg == pytest.approx(head.rms_deg, rel=1e-4)
-        assert store.pins()[preset.name, condition, "calibration"].bound_deg is None
-
-
 CHANGES = {
     "every sample": ({"seed": 8}, "calibration: head_hash"),
     "a bound": ({"looseness": 1.01}, "test: head_bound_deg"),
@@ -168,23 +156,6 @@ def test_data_or_bounds_that_change_while_the_version_does_not_are_an_error(stor
     assert {store.pins()[place].version for place in moved} == {2}
 
 
-def test_a_change_back_is_no_change(store):
-    update(store, parts=parts(Diodes()))
-    before = contents(store)
-    with pytest.raises(UnversionedChangeError):
-        update(store, parts=parts(Diodes(seed=8)))
-    update(store, parts=parts(Diodes()))
-    assert contents(store) == before
-
-
-def test_a_new_version_of_unchanged_data_is_pinned_as_such(store):
-    update(store, parts=parts(Diodes()))
-    hashes = {place: pin.data_hash for place, pin in store.pins().items()}
-    update(store, parts=parts(Diodes(version=2)))
-    assert {place: pin.data_hash for place, pin in store.pins().items()} == hashes
-    assert {pin.version for pin in store.pins().values()} == {2}
-
-
 def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
     there = parts(Diodes())
     update(store, parts=there)
@@ -216,30 +187,6 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
         "fake-missing quiet",
     ]
     assert all(line.endswith("OSError: no data today") for line in gone)
-
-
-def test_each_condition_that_is_generated_again_is_counted(store):
-    there, seen = parts(Diodes()), []
-    update(store, parts=there)
-    pinning.differences(store, progress=lambda *said: seen.append(said), parts=there)
-    assert seen == [(1, 2, "fake-diodes quiet"), (2, 2, "fake-diodes noisy")]
-
-
-def test_data_that_cannot_be_made_are_told_and_the_rest_is_pinned(store):
-    done = update(store, parts=parts(Missing(), Diodes()))
-    named = [line.partition(": ")[0] for line in done.warnings]
-    assert named == ["fake-missing quiet", "fake-missing noisy"]
-    assert all(line.endswith("OSError: no data today") for line in done.warnings)
-    assert len(store.pins()) == 6
-
-
-def test_some_data_sets_are_pinned_alone(store):
-    there = parts(Diodes(), Diodes(name="fake-second"))
-    update(store, parts=there, datasets=["fake-second"])
-    assert {place[0] for place in store.pins()} == {"fake-second"}
-    assert list(store.components().datasets) == ["fake-second"]
-    update(store, parts=there, datasets=["fake-diodes"])
-    assert set(store.pins()) == pinning.places(there)
 
 
 def test_scores_of_data_that_were_pinned_anew_are_dropped(store):

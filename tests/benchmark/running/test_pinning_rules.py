@@ -11,10 +11,9 @@ import pytest
 from fake_atlas import Diodes, FakeBound
 from fake_results import pin
 
-from benchmark.contract import UnknownNameError
 from benchmark.datasets.samples import HEAD
 from benchmark.progress import silent
-from benchmark.results.components import Components, current
+from benchmark.results.components import current
 from benchmark.results.record import open_record
 from benchmark.results.store import Store
 from benchmark.running import pinning
@@ -55,36 +54,6 @@ def test_the_error_names_every_data_set_with_its_first_change_and_keeps_all() ->
     assert len(caught.value.changes["d"]) == 2
 
 
-def test_every_condition_and_split_is_a_place() -> None:
-    parts = fake_plan.parts(presets=(Diodes(), Diodes(name="z", conditions=("quiet",))))
-    places = pinning.places(parts)
-    assert places == {
-        (name, condition, split)
-        for name, condition in (("fake-diodes", "quiet"), ("fake-diodes", "noisy"), ("z", "quiet"))
-        for split in ("calibration", "test", "repeat")
-    }
-    listed = [(preset.name, name) for preset, name in pinning.conditions_of(parts)]
-    assert listed == [("fake-diodes", "quiet"), ("fake-diodes", "noisy"), ("z", "quiet")]
-    assert [p.name for p, _ in pinning.conditions_of(parts, ["z", "z"])] == ["z"]
-    assert pinning.conditions_of(parts, []) == []
-    with pytest.raises(UnknownNameError, match="fake-diodes"):
-        pinning.conditions_of(parts, ["z", "fake-diode"])
-
-
-def test_data_sets_of_other_code_are_those_whose_digest_is_another(tmp_path: Any) -> None:
-    parts = fake_plan.parts(presets=(Diodes(), Diodes(name="z")))
-    store, now = Store(tmp_path), current(parts)
-    assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == [
-        "fake-diodes",
-        "z",
-    ]
-    moved = {**now.datasets, "z": {**now.datasets["z"], "conditions": {"noisy": "older"}}}
-    store.write({}, [], Components(now.stages, datasets=moved))
-    assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == ["z"]
-    store.write({}, [], Components({**now.stages, "data": "older"}, datasets=now.datasets))
-    assert len(pinning.presets_of_other_code(store, parts, now)) == 2
-
-
 def test_only_what_is_missing_is_generated_and_counted(tmp_path: Any) -> None:
     class Broken(Diodes):
         def generate(self, condition: str, split: str, n: int | None = None) -> Any:
@@ -111,16 +80,6 @@ def test_only_what_is_missing_is_generated_and_counted(tmp_path: Any) -> None:
             record, components, parts, workers=1, progress=silent, datasets=["fake-diodes"]
         )
         assert (again.kept, again.renewed, again.warnings) == (1, 1, ())
-
-
-@pytest.mark.parametrize(("workers", "right"), [(0, False), (1, True)])
-def test_pinning_takes_one_worker_at_least(tmp_path: Any, workers: int, right: bool) -> None:
-    parts = fake_plan.parts(presets=(Diodes(n=40),))
-    if right:
-        assert pinning.update(Store(tmp_path), workers, silent, parts=parts).renewed == 2
-    else:
-        with pytest.raises(ValueError, match="at least 1; got 0"):
-            pinning.update(Store(tmp_path), workers, silent, parts=parts)
 
 
 def test_a_pinned_bound_is_the_root_mean_square_of_the_observable_first() -> None:

@@ -99,13 +99,6 @@ def test_a_defect_of_an_implementation_is_planned_so_that_its_row_says_what_fail
     assert refused == {("fake-balanced", ""), ("fake-framed", "")}
 
 
-def test_planned_are_cells_of_the_standard_unit_and_others_name_theirs(parts):
-    found = plan.cells(parts=parts)
-    assert {cell.unit for cell in found} == {0}
-    assert str(found[0]) == "fake-diodes/noisy/fake-currents/fake-least-squares"
-    assert str(dataclasses.replace(found[0], unit=3)) == f"{found[0]}/unit 3"
-
-
 def test_filters_narrow_the_plan(parts):
     found = plan.cells(conditions="noisy", extractors=["fake-gaps"], parts=parts)
     assert found == [Cell("fake-diodes", "noisy", "fake-gaps", "fake-least-squares")]
@@ -130,13 +123,6 @@ def test_an_unknown_name_raises_with_the_nearest(parts, argument, given, nearest
     with pytest.raises(UnknownNameError, match=nearest) as caught:
         plan.cells(**{argument: given}, parts=parts)
     assert caught.value.nearest == nearest
-
-
-def test_architectures_and_their_datasets(parts):
-    found = plan.scorable_plan(parts=parts)
-    assert set(found) == {("PD", "Maskless")}
-    planned = {(cell.extractor, cell.model) for cell in plan.cells(parts=parts)}
-    assert found["PD", "Maskless"] == dict.fromkeys(planned, ("fake-diodes",))
 
 
 def test_parts_of_cells_are_theirs_alone(parts):

@@ -4,7 +4,6 @@ import dataclasses
 import sys
 
 import fake_atlas
-import fake_cluster
 import fake_plan
 import numpy as np
 import pytest
@@ -14,8 +13,7 @@ from benchmark.metrics.score import repeatability_deg
 from benchmark.plan import combinations as plan
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.running import condition_data, runner
-from benchmark.running.workers import WorkerLostError
+from benchmark.running import runner
 
 pytestmark = pytest.mark.usefixtures("log")
 
@@ -70,14 +68,6 @@ def test_repeatability_is_of_the_answers_to_the_repeated_poses(store):
     assert row["repeatability_deg"] == pytest.approx(row["bound_deg"], rel=0.2)
 
 
-def test_errors_stand_beside_the_bound_of_who_does_not_know_the_unit_too(store):
-    parts = fake_plan.parts(presets=(fake_atlas.Diodes(unit_share=1.5),))
-    measure(store, parts)
-    row = store.query(condition="noisy", extractor="fake-currents")[0]
-    assert row["bound_unit_deg"] == pytest.approx(1.5 * row["bound_deg"], rel=1e-4)
-    assert row["over_bound_unit"] == pytest.approx(row["over_bound"] / 1.5, rel=1e-4)
-
-
 def test_what_cannot_be_observed_is_left_to_false_suns(store):
     """The first eighth of the test split is dark, three of the repeated poses among it."""
     parts = fake_plan.parts(presets=(fake_atlas.Diodes(dark=0.125),))
@@ -123,16 +113,6 @@ def test_another_unit_judges_what_is_observable_by_the_standard_one(store, log, 
     assert log().count("bound fake-diodes quiet test") == 1
 
 
-@pytest.mark.slow
-def test_one_and_two_workers_give_identical_bytes(store, tmp_path):
-    parts = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
-    measure(store, parts)
-    other = Store(tmp_path / "two")
-    measure(other, parts, workers=2)
-    assert contents(other) == contents(store)
-    assert len(store.rows()) == 8
-
-
 def test_a_second_run_renders_nothing_and_changes_no_byte(store, log):
     measure(store)
     before, done = contents(store), log()
@@ -156,25 +136,6 @@ def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, l
     assert len(generated) == len(set(generated)) == 2 * 3
     extractions = [line for line in log() if line.startswith("extract fake-currents")]
     assert len(extractions) == 2 * 3, "each split once, for two conditions"
-
-
-def test_only_what_changed_is_measured_again(store, log):
-    measure(store)
-    about = dataclasses.replace(fake_atlas.Gaps.about, version=2)
-    newer = type("Newer", (fake_atlas.Gaps,), {"about": about, "__module__": "fake_atlas"})
-    parts = fake_plan.parts()
-    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
-    stale = runner.stale(plan.cells(parts=parts), store, parts=parts)
-    assert [cell.extractor for cell in stale] == ["fake-gaps", "fake-gaps"]
-    before, pins = log(), store.pins()
-    assert measure(store, parts).computed == 2
-    assert {line for line in log()[len(before) :] if line.startswith("extract")} == {
-        "extract fake-gaps 400",
-        "extract fake-gaps 80",
-    }
-    assert store.pins() == pins
-    assert len(store.rows()) == 4
-    assert {row["extractor_version"] for row in store.query(extractor="fake-gaps")} == {2}
 
 
 def test_data_that_change_are_measured_again_whatever_their_version(store):
@@ -227,14 +188,6 @@ def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
     assert reasons["fake-empty", "fake-gaps"] == "generating data: OSError: no data today"
 
 
-def test_a_partial_run_keeps_other_results(store):
-    measure(store)
-    before = contents(store)
-    parts = fake_plan.parts()
-    runner.run(plan.cells(conditions="quiet", parts=parts), store, parts=parts)
-    assert contents(store) == before
-
-
 def test_a_partial_run_drops_what_its_new_code_no_longer_vouches_for(store):
     """A changed extractor measured under one condition: its other score is of older code."""
     measure(store)
@@ -262,20 +215,6 @@ def test_ctrl_c_keeps_what_is_stored_and_says_so(store, log):
     assert contents(store) == {}, "an interrupted run does not touch the results"
     assert measure(store).already_stored == 2
     assert not Record(store).journal.exists()
-
-
-def test_progress_counts_cells_to_the_end(store):
-    seen = []
-    measure(store, progress=lambda done, total, *_: seen.append((done, total)))
-    assert seen == [(0, 4), (1, 4), (2, 4), (3, 4), (4, 4)]
-
-
-def test_data_kept_are_those_of_the_same_parameters_and_unit():
-    first, other = fake_atlas.Diodes(), fake_atlas.Diodes(seed=8)
-    one, two = (condition_data.generated_pins(preset, "quiet") for preset in (first, other))
-    assert [a.data_hash == b.data_hash for a, b in zip(one, two, strict=True)] == [False] * 3
-    again = condition_data.generated_pins(fake_atlas.Diodes(), "quiet")
-    assert again is one, "an equal preset finds them"
 
 
 def test_dask_without_its_package_is_a_clear_error(store, monkeypatch):
@@ -340,24 +279,3 @@ def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(name, 
         with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
             call([known, wrong], store, parts=fake_plan.parts())
     assert not store.directory.exists()
-
-
-def test_cells_are_measured_once_each(store):
-    cell = plan.Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
-    done = runner.run([cell, cell], store, parts=fake_plan.parts())
-    assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
-
-
-@pytest.mark.slow
-def test_a_worker_that_is_killed_ends_the_run_and_the_next_does_what_is_missing(store, tmp_path):
-    deadly = tmp_path / "deadly"
-    deadly.touch()
-    parts = fake_cluster.parts(deadly=str(deadly))
-    with pytest.raises(WorkerLostError, match="a worker process was killed"):
-        measure(store, parts, workers=2)
-    deadly.unlink()
-    kept = len(plan.cells(parts=parts)) - len(
-        runner.stale(plan.cells(parts=parts), store, parts=parts)
-    )
-    assert measure(store, parts, workers=2).already_stored == kept
-    assert len(store.rows()) == len(plan.cells(parts=parts))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +10,6 @@ import pytest
 
 from benchmark.running import schedule
 from benchmark.running.stages import Task
-from benchmark.running.task import TaskResult
 
 
 def task(dataset: str, condition: str = "quiet", unit: int = 0, extractor: str = "one") -> Task:
@@ -47,17 +45,3 @@ def test_units_stay_together_where_there_are_many_and_the_largest_is_first() -> 
     small = [task(name, unit=unit) for name in "abcd" for unit in (1, 2)]
     large = [task("e", condition) for condition in ("noisy", "quiet")]
     assert schedule.pieces([*small, *large], 2) == [tuple(large), *[(one,) for one in small]]
-
-
-def test_what_a_preset_computes_when_it_is_measured_stays_with_the_worker(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def measured(task: Task, _: Any) -> TaskResult:
-        vars(task.preset)["computed"] = bytes(10_000)
-        return TaskResult(task, (), ())
-
-    monkeypatch.setattr(schedule, "measure", measured)
-    some = [Task(fake_atlas.Diodes(), "quiet", fake_atlas.Currents, (), unit) for unit in (0, 1)]
-    done = list(schedule.outcomes(some, 1, None, None))
-    assert [one.task for one in done] == some
-    assert len(pickle.dumps(done)) < 10_000

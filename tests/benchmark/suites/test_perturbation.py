@@ -8,7 +8,6 @@ import pytest
 from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import installed_parts
-from benchmark.suites import perturbation
 from benchmark.suites.perturbation import SIZE, SensitiveCell, perturb, search
 
 
@@ -52,14 +51,3 @@ def test_what_moves_is_told_from_a_last_digit_that_turns(before, after, moved):
         SensitiveCell(Cell("d", "c", "e", "m"), "features", {"rms_deg": (before, after)}).is_moved
         is moved
     )
-
-
-@pytest.mark.slow
-def test_the_command_counts_cells_that_move_by_more_than_a_last_digit(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    chosen = ["--condition", "nominal", "--extractor", "voltage-balance", "--model", "spm"]
-    assert perturbation.main(["qpd-single-aperture", *chosen]) == 0
-    assert "1 cells: 0 move, " in capsys.readouterr().out
-    with pytest.raises(SystemExit):
-        perturbation.main(["qpd-single-apertur"])

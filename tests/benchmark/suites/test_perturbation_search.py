@@ -109,12 +109,6 @@ def test_a_model_with_a_cliff_at_exact_numbers_is_found_and_a_smooth_one_is_not(
     )
 
 
-def test_observations_stay_as_they_are_where_that_is_asked_for() -> None:
-    wanted = cells_of("fake-coarse", "fake-cliff")
-    found = search(wanted, PARTS, observations=False)
-    assert [one.inputs for one in found.moved_cells] == ["features"]
-
-
 def test_counts_are_not_perturbed() -> None:
     found = search(cells_of("fake-counts", "fake-cliff"), PARTS)
     assert (found.cells, found.sensitive_cells) == (1, ())

@@ -47,14 +47,6 @@ EXTRACTORS = {"fake-currents", "fake-gaps"}
 FINE = [cell for cell in cells(parts=parts()) if cell.model != "fake-broken"]
 
 
-def test_before_anything_is_measured_all_is_new(tmp_path: Path) -> None:
-    wanted = cells(parts=parts())
-    found = plan(wanted, [Store(tmp_path / "none"), Store(tmp_path / "other")], parts=parts())
-    assert found.cells == tuple(wanted)
-    assert found.missing == dict.fromkeys(wanted, ("new",))
-    assert not (tmp_path / "none").exists()
-
-
 def test_what_is_measured_is_not_planned_and_what_failed_is(store: Store, tmp_path: Path) -> None:
     for stores in ([store], [Store(tmp_path), store], [store, Store(tmp_path)]):
         assert plan(FINE, stores, parts=parts()).missing == {}

@@ -10,7 +10,6 @@ import pytest
 
 from algorithms.chain import Chain
 from benchmark.contract import Cell, UnknownNameError
-from benchmark.leaderboard import scope
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
@@ -51,17 +50,6 @@ def test_quick_meets_every_category_of_models_that_has_one(quick: list[Cell]) ->
 def test_quick_needs_nothing_that_is_not_published_anyway(quick: list[Cell]) -> None:
     assert set(quick) <= set(Store(PUBLISHED).scores())
     assert {cell.unit for cell in quick} == {0}
-
-
-@pytest.mark.slow
-def test_standard_is_all_that_is_published() -> None:
-    published = Store(PUBLISHED).scores()
-    assert suite("standard").select(published, installed_parts()) == sorted(published)
-
-
-def test_standard_is_the_first_cells_where_nothing_is_known() -> None:
-    parts = fake_plan.parts()
-    assert suite("standard").select({}, parts) == scope.first(parts)
 
 
 def test_what_is_new_takes_its_place_in_quick_and_moves_nothing_else() -> None:

@@ -54,17 +54,6 @@ def dropped(found: TidyResult) -> tuple[int, int]:
     return found.scores, found.pins
 
 
-def test_results_of_a_data_set_that_is_gone_are_dropped(store: Store) -> None:
-    every = parts()
-    left = replace(every, presets={"fake-diodes": every.presets["fake-diodes"]})
-    there = store.scores()
-    gone = sum(cell.dataset == "fake-second" for cell in there)
-    done = tidy(store, parts=left)
-    assert (done.scores, done.kept) == (gone, len(there) - gone)
-    assert {cell.dataset for cell in store.scores()} == {"fake-diodes"}
-    assert {place[0] for place in store.pins()} <= {"fake-diodes"}
-
-
 def test_a_store_of_today_s_code_stays_as_it_is(store: Store) -> None:
     before = contents(store)
     for do in (would_tidy, tidy):
@@ -92,14 +81,6 @@ def test_scores_and_pins_of_changed_data_go(store: Store) -> None:
     assert stale(fine, store, parts=now) == []
 
 
-def test_what_is_not_installed_any_more_goes(store: Store) -> None:
-    known = parts()
-    now = replace(known, extractors={"fake-currents": known.extractors["fake-currents"]})
-    done = tidy(store, parts=now)
-    assert dropped(done) == (4, 0)
-    assert {cell.extractor for cell in store.scores()} == {"fake-currents"}
-
-
 def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:
     store = Store(tmp_path)
 
@@ -111,12 +92,6 @@ def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:
         run(cells(parts=parts()), store, progress=stop, parts=parts())
     assert not store.scores_directory.exists()
     assert tidy(store, parts=parts()).kept == len(store.scores()) == 2
-
-
-def test_a_store_that_is_not_there_is_not_made(tmp_path: Path) -> None:
-    for do in (would_tidy, tidy):
-        assert do(Store(tmp_path / "none"), parts=parts()) == TidyResult(0, 0, 0, 0)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_store_that_a_runner_writes_to_is_left_alone(store: Store) -> None:

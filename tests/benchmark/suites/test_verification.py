@@ -13,7 +13,7 @@ from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running.runner import RunInterruptedError, run
+from benchmark.running.runner import run
 from benchmark.suites.verification import VerificationResult, draw_cells, verify
 
 PARTS = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Choosy)
@@ -57,12 +57,6 @@ def test_a_record_of_this_code_is_alike_to_the_last_digit(record: Store) -> None
     found = verified(record)
     assert (len(found.cells), found.alike, found.differences) == (16, 16, ())
     assert contents(record) == before
-
-
-def test_scores_of_other_units_and_refusals_are_verified_too(record: Store) -> None:
-    wanted = [cell for cell in record.scores() if cell.unit == 1]
-    assert {row["status"] for row in record.scores().values()} == {"ok", "refused"}
-    assert verified(record, wanted).alike == len(wanted) == 8
 
 
 @pytest.mark.parametrize("factor", [1.01, 0.5])
@@ -112,12 +106,3 @@ def test_every_cell_is_drawn_as_often_as_any_other() -> None:
             counts[cell] += 1
     assert sum(counts.values()) == 4000
     assert max(abs(count - 20) for count in counts.values()) < 5 * 4.4
-
-
-def test_an_interrupted_verification_says_that_nothing_is_kept(record: Store) -> None:
-    def stop(done: int, _total: int, _what: str) -> None:
-        if done:
-            raise KeyboardInterrupt
-
-    with pytest.raises(RunInterruptedError, match="keeps nothing"):
-        verify(list(record.scores()), record, 1, stop, parts=PARTS)

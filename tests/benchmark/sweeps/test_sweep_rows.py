@@ -13,7 +13,6 @@ from algorithms.contract import (
     FeatureKind,
     Observation,
     SensorGeometry,
-    UnusableDataError,
 )
 from benchmark.sweeps import plan
 from benchmark.sweeps.differences import differences
@@ -46,13 +45,6 @@ class Lines:
         both = np.array(observations, dtype=float).reshape(len(observations), 2, -1)
         both[:, :, 100:] = 0.0  # where the glint stands
         return self.extract(both)
-
-
-class Refusing(Lines):
-    about = replace(Lines.about, name="fake-refusing")
-
-    def extract(self, observations: Any) -> Any:
-        raise UnusableDataError("too little light\nfor it")
 
 
 class Unbuildable(Lines):
@@ -94,15 +86,6 @@ def test_a_method_that_remembers_follows_a_feature_past_a_glint() -> None:
     assert lost["rms"] > 20.0
     assert measured(Forgetful, "location", "middle")["status"] == "ok"
     assert measured(Forgetful, "tracking", "glint")["status"] == "failed"
-
-
-def test_data_that_a_method_refuses_are_no_failure() -> None:
-    row = measured(Refusing, "noise", "50")
-    assert (row["status"], row["reason"]) == (
-        "refused",
-        "UnusableDataError: too little light for it",
-    )
-    assert row["rms"] is None
 
 
 def test_a_method_that_breaks_on_a_design_is_planned_and_its_row_says_so() -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 import re
 from dataclasses import dataclass
 from typing import ClassVar
@@ -23,9 +21,7 @@ from benchmark.running.experiment import list_due, update
 from benchmark.sweeps import plan as sweep_plan
 from benchmark.sweeps import plots as sweep_pictures
 from benchmark.sweeps import sweep_tables
-from benchmark.sweeps.differences import differences
-from benchmark.sweeps.points import Point
-from benchmark.sweeps.record import RECORD, point_of, swept
+from benchmark.sweeps.record import RECORD, swept
 from benchmark.synthetic_features.series import SWEEPS
 
 
@@ -137,17 +133,6 @@ def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name)
     assert computed(made, {"plain": Plain}) == (POINTS if name == "quadrants" else 0)
 
 
-def test_a_reason_that_changes_is_renewed(made, monkeypatch):
-    """What a method is refused for is the plan's to say, whatever code stood there before."""
-    events = dataclasses.replace(Spots.about, observation=Observation.EVENTS)
-    monkeypatch.setattr(Spots, "about", events)
-    monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
-    computed(made)
-    ((sensor, method, reason),) = sweep_tables.unmeasured_settings(swept(made))
-    assert (sensor, method) == ("", "spots-of-readings")
-    assert re.search(r"\bevents\b.*\bspot\b", reason)
-
-
 @pytest.mark.slow
 def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
     known = discover_extractors()
@@ -159,50 +144,6 @@ def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
     assert computed(grown, some) < 60
     assert table(two) == table(one)
     assert table(grown) == table(one)
-
-
-def test_a_missing_point_and_one_too_much_are_named(made):
-    rows = RECORD.read(made)
-    gone = next(point for point, row in rows.items() if row["status"] == "ok")
-    other = dataclasses.replace(gone, point="else")
-    row = rows.pop(gone)
-    RECORD.write({**rows, other: {**row, "point": "else"}}, made)
-    found = [(point, why) for point, why in list_due(of(made)) if why != "failed"]
-    assert sorted(found) == sorted([(gone, "absent"), (other, "no longer wanted")])
-
-
-def test_a_number_that_moved_is_told_beyond_the_tolerance_only(made):
-    rows = [row for row in swept(made) if row["status"] == "ok"]
-    near = [{**row, "rms": row["rms"] * 1.00005} for row in rows]
-    assert list(differences(rows, near)) == []
-    far = [{**rows[0], "rms": rows[0]["rms"] * 1.001}, *rows[1:]]
-    (found,) = differences(rows, far)
-    assert found[0] == f"{point_of(rows[0])}/rms"
-    assert [place for place, *_ in differences(rows[1:], rows)] == [f"{point_of(rows[0])}/row"]
-
-
-def test_tables_show_what_is_stored_cell_by_cell(made):
-    rows = swept(made)
-    shown = {
-        (cell, column): text
-        for one in sweep_tables.tables(rows)
-        for _, values in one.rows
-        for cell, column, text in values
-    }
-    assert shown["quadrants/noise/50/broken", "over_bound"] == "-"
-    row = next(r for r in rows if point_of(r) == Point("quadrants", "noise", "50", "plain"))
-    assert shown["quadrants/noise/50/plain", "over_bound"] == f"{row['over_bound']:#.4g}"
-    text = "\n".join(sweep_tables.to_markdown(rows))
-    assert f"| {shown['quadrants/noise/50/plain', 'over_bound']} |" in text
-    assert re.search(r"^- spots-of-readings\b.*currents", text, re.MULTILINE)
-    as_csv = list(csv.DictReader(io.StringIO(sweep_tables.to_csv(rows))))
-    assert len(as_csv) == len(rows)
-    for line, stored in zip(as_csv, rows, strict=True):
-        for name, value in stored.items():
-            if isinstance(value, float):
-                assert float(line[name]) == value
-            else:
-                assert line[name] == ("" if value is None else str(value))
 
 
 @pytest.mark.slow

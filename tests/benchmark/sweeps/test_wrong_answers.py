@@ -9,7 +9,6 @@ from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observat
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, plan_points
 from benchmark.sweeps.points import Point
-from benchmark.synthetic_features.frame_sets import FRAME_SETS
 from benchmark.synthetic_features.series import WRONG_PX
 
 FRAMES = SERIES["frames"]
@@ -38,11 +37,6 @@ def row_of(point, answers, frames=40):
     ((_, row),) = measure(Task({place: answering(answers)}, setting, {}))
     assert row["status"] == "ok", row["reason"]
     return row
-
-
-def test_every_set_of_the_bench_is_a_point():
-    assert list(SETTINGS) == [chosen.name for chosen in FRAME_SETS]
-    assert all(FRAMES.geometry(setting).aperture_width_mm > 0 for setting in SETTINGS.values())
 
 
 def test_every_single_spot_extractor_of_frames_is_measured_on_every_set():

@@ -14,7 +14,7 @@ from algorithms.extractors.frames.cameras.blooming_cameras import (
 )
 from algorithms.extractors.frames.cameras.hough import HoughCircle, HoughLines
 from benchmark.datasets import get
-from benchmark.datasets.preview_overlay import overlay_png, true_places
+from benchmark.datasets.preview_overlay import true_places
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 
@@ -125,13 +125,3 @@ def test_events_place_lines_and_spots_to_a_fraction_of_a_pixel(dataset):
     # what is found: without it the brightest pixels of a soft spot are now and then taken for hot.
     away = np.abs(EventCentroid.for_sensor(preset.geometry).extract(hot) - truth)
     assert (away - np.abs(found - truth)).max() < 0.1
-
-
-def test_the_overlay_draws_what_is_found_and_refuses_what_it_cannot_show():
-    png = overlay_png(get("cmos-lens"), BlackSunCentroid, ("glare",))
-    assert png.startswith(b"\x89PNG")
-    for dataset, extractor in (("event-l-slit", BlackSunCentroid), ("cmos-lens", EventCentroid)):
-        with pytest.raises(ValueError, match="frames"):
-            overlay_png(get(dataset), extractor)
-    with pytest.raises(ValueError, match="no condition"):
-        overlay_png(get("cmos-lens"), BlackSunCentroid, ("fog",))

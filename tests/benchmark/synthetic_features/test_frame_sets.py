@@ -100,11 +100,3 @@ def test_a_second_light_is_where_and_as_bright_as_it_should_be(name, share):
     apart = np.hypot(*(np.column_stack([x, y]) - centres).T)
     assert apart.min() > 17.9
     assert apart.max() < 24.1
-
-
-def test_spots_over_the_edge_are_cut_there():
-    centres = SETS["edge-cut"].draw(6, 50).centres
-    inside = np.minimum(centres, 63.0 - centres).min(axis=1)
-    assert inside.max() < 8.0
-    assert inside.min() > -5.0
-    assert (inside < 0).any()

@@ -12,7 +12,6 @@ from benchmark.sweeps.plan import SERIES
 from benchmark.synthetic_features.frame_sets import FRAME_SETS
 from benchmark.synthetic_features.light import BACKGROUND_E, bars, gain_e_per_dn, peak_e
 from benchmark.synthetic_features.series import GLINT, Sample, SeriesPoint
-from benchmark.synthetic_features.shapes import disc, render
 
 
 def setting_of(series: str, sweep: str, point: str, frames: int = 6) -> SeriesPoint:
@@ -51,15 +50,6 @@ def test_a_share_of_a_single_bars_pixels_reads_nothing(point: str, share: float)
     assert (lit == 0).mean() == pytest.approx(share, abs=0.04)
 
 
-def test_of_several_bars_one_is_missing_on_every_array() -> None:
-    bars_lit = []
-    for point in ("0", "0.2"):
-        _, light = drawn("slits", "missing", point)
-        bars_lit.append(light.reshape(6, 2, 128).sum(axis=2) / (2.0 * 4.0))
-    assert bars_lit[0] == pytest.approx(5.0, abs=0.3)
-    assert bars_lit[1] == pytest.approx(4.0, abs=0.3)
-
-
 @pytest.mark.parametrize("sigma", [1.0, 4.0])
 def test_a_gaussian_bar_holds_the_light_of_its_closed_form(sigma: float) -> None:
     light = bars(128, np.array([[63.2, 20.9], [60.0, 90.0]]), sigma, "gaussian")
@@ -77,33 +67,6 @@ def test_a_disc_is_tracked_beside_a_brighter_one() -> None:
         assert frame[y, x] == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.parametrize(("point", "share"), [("0.2", 0.2), ("0", 0.0)])
-def test_a_share_of_a_frames_pixels_is_dead(point: str, share: float) -> None:
-    sample, _ = drawn("disc", "missing", point)
-    y, x = np.indices((64, 64))
-    at = sample.truth[:, :, None, None]
-    lit = sample.observations[np.hypot(x - at[:, 0], y - at[:, 1]) < 6.0]
-    assert (lit == 0).mean() == pytest.approx(share, abs=0.05)
-
-
-def test_a_fifth_of_a_grids_discs_is_missing_and_its_glint_is_brighter() -> None:
-    disc_area = math.pi * (4.0**2 + 0.7**2)
-    _, light = drawn("grid", "missing", "0.2", frames=2)
-    assert light.sum(axis=(1, 2)) / disc_area == pytest.approx(20.0, rel=0.05)
-    _, light = drawn("grid", "tracking", "glint", frames=2)
-    assert light[:, 8, 119] == pytest.approx([0.0, GLINT], abs=0.2)
-    assert light[0].sum() / disc_area == pytest.approx(25.0, rel=0.05)
-
-
-def test_reference_frames_of_a_series_are_those_of_the_set_of_that_name() -> None:
-    series, setting = SERIES["disc"], setting_of("disc", "reference", "gaussian", 3)
-    sample = series.draw(setting)
-    assert sample.observations.shape == (3, 64, 64)
-    for frame, (x, y) in zip(sample.observations, np.rint(sample.truth).astype(int), strict=True):
-        assert frame[y, x] > frame.mean() + 100
-    assert sample.bound == pytest.approx(0.057, rel=0.02)
-
-
 @pytest.mark.parametrize(("series", "phase"), [("blooming", 0.5), ("black-sun", 0.25)])
 def test_suns_of_a_phase_fall_on_it_and_pictures_show_them_there(series: str, phase: float) -> None:
     sample = SERIES[series].draw(setting_of(series, "phase", f"{phase:g}", 1))
@@ -113,14 +76,6 @@ def test_suns_of_a_phase_fall_on_it_and_pictures_show_them_there(series: str, ph
     assert near.max() > 0.9 * frame.max()
     assert near.max() > 3.0 * np.median(frame)
     assert 1e-3 < sample.bound < 0.1
-
-
-def test_a_spot_outside_of_the_frame_leaves_it_dark() -> None:
-    centres = np.array([[200.0, 30.0], [30.0, -100.0], [30.2, 31.4]])
-    beside, below, inside = render(disc(6.0), centres, np.zeros(3), 64)
-    assert not beside.any()
-    assert not below.any()
-    assert inside.sum() == pytest.approx(math.pi * 6.0**2, rel=0.02)
 
 
 def test_a_gradient_rises_by_a_tenth_of_the_peak_across_the_frame() -> None:
