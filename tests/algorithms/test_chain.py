@@ -9,17 +9,13 @@ import pytest
 
 from algorithms.chain import Chain, chains
 from algorithms.compensations.combinations import combinations
-from algorithms.compensations.electronics.angular_loss import AngularLoss
-from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.compensations.optics.refraction import Refraction
 from algorithms.contract import FeatureKind, SensorGeometry, UnsuitableDesignError
 from algorithms.discovery import discover_chains, discover_compensations, discover_models
 from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.extractors.profiles.centroid import ProfileCentroid
 from algorithms.models.geometric.multi_slit import MultiSlit
-from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.standard_projection import StandardProjection
-from algorithms.models.non_physical.polynomial import SurfacePolynomial
 
 
 def test_every_compensation_goes_ahead_of_something_that_there_is():
@@ -30,17 +26,6 @@ def test_every_compensation_goes_ahead_of_something_that_there_is():
             chain = found[f"{name} + {behind}"]
             assert chain.about.taxonomy == compensation.about.taxonomy
         assert compensation.about.ahead_of, f"{name} is never measured"
-
-
-def test_a_chain_says_what_its_parts_say():
-    about = Chain((Refraction, MaskShadow), SurfacePolynomial).about
-    assert about.name == "optical + shadow + polynomial-2d"
-    assert about.needs == (
-        "focal_length_mm", "cover_glass", "mask_thickness_mm", "aperture_width_mm",
-    )  # fmt: skip
-    assert {"Wei2011", "Antonello2018", "Chang2006"} == set(about.studies)
-    assert about.version == 2  # its parts' together: MaskShadow has been corrected once
-    assert Chain((AngularLoss,), SixFaces).about.accepts == {FeatureKind.SIGNALS}
 
 
 def test_a_chain_is_made_for_a_sensor_and_answers_as_its_parts_do(geometry, field):
@@ -68,13 +53,6 @@ def test_a_compensation_ahead_of_what_cannot_be_is_named(behind, said):
 
     with pytest.raises(ValueError, match=f"optical goes ahead of .*{said}"):
         chains({"optical": Lost}, discover_models())
-
-
-def test_a_combination_says_who_used_it_and_what_it_needs():
-    lut = discover_chains()["optical + lut"]
-    assert {"Delgado2013", "Ortega2009", "Wei2011"} <= set(lut.about.studies)
-    assert lut.about.needs == ("focal_length_mm", "cover_glass", "aperture_shape")
-    assert lut.about.version == 1
 
 
 def test_glass_that_a_compensation_takes_out_is_not_the_models_behind(field):

@@ -75,29 +75,9 @@ def test_one_word_is_not_taken_for_a_list_of_letters(words):
         replace(ABOUT, **{words: "He2005"})
 
 
-def test_a_column_of_the_context_is_not_taken_for_a_list_of_letters() -> None:
-    with pytest.raises(TypeError, match="context must be a tuple; got 'time_s'"):
-        replace(Ahead.about, context="time_s")
-
-
 def test_a_model_must_read_something():
     with pytest.raises(ValueError, match="ahead: accepts must name a kind"):
         replace(Ahead.about, accepts=frozenset())
-
-
-def test_the_kind_names_the_columns():
-    @dataclass(frozen=True)
-    class Balance(Middle):
-        about: ClassVar = replace(ABOUT, kind=FeatureKind.BALANCE)
-
-    @dataclass(frozen=True)
-    class Signals(Middle):
-        about: ClassVar = replace(ABOUT, kind=FeatureKind.SIGNALS)
-
-    assert Middle().features == ("x_px", "y_px")
-    assert Balance().features == ("s_a", "s_b")
-    with pytest.raises(NotImplementedError, match="middle must name its own columns"):
-        _ = Signals().features
 
 
 def test_a_design_that_says_what_is_needed_is_taken_by_default():
@@ -110,24 +90,3 @@ def test_a_design_that_says_what_is_needed_is_taken_by_default():
         Ahead.for_sensor(SensorGeometry(), FeatureKind.SPOT)
     with pytest.raises(UnsuitableDesignError, match=r"ahead.*balance, spot.*signals"):
         Ahead.for_sensor(wide, FeatureKind.SIGNALS)
-
-
-def test_an_implementation_without_its_method_cannot_be_made():
-    @dataclass(frozen=True)
-    class Nothing(Extractor):
-        about: ClassVar = ABOUT
-
-    with pytest.raises(TypeError, match="extract"):
-        Nothing()
-
-
-def test_the_contract_is_structural():
-    """A class that has the members keeps it, whatever its bases."""
-
-    class Apart:
-        about = ABOUT
-        features = ("x_px", "y_px")
-        for_sensor = extract = measure = len
-
-    assert isinstance(Apart(), Extractor)
-    assert not isinstance(Apart(), Model)

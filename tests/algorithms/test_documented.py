@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-import pytest
-
 from algorithms.contract import AboutModel, FeatureKind
 from algorithms.documented import documented
 
@@ -118,17 +116,3 @@ Examples
 
 def test_every_section_is_completed_in_the_order_of_the_signature() -> None:
     assert made(("He2005",), ("model:spm",)).__doc__ == EXPECTED
-
-
-@pytest.mark.parametrize(
-    ("studies", "labels", "said"),
-    [
-        (("He2005", "Xie2014"), (), "He2005, Xie2014."),
-        ((), ("fe:bcm", "alg:BCM"), "Survey fe:bcm, alg:BCM."),
-        ((), (), "None of the survey: ours."),
-    ],
-)
-def test_references_are_the_studies_and_labels(
-    studies: tuple[str, ...], labels: tuple[str, ...], said: str
-) -> None:
-    assert f"\nReferences\n----------\n{said}\n" in (made(studies, labels).__doc__ or "")

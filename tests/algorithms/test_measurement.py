@@ -8,7 +8,7 @@ import pytest
 from algorithms.contract import Observation
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.centroid import BasicCentroid
-from algorithms.measurement import Measurement, QualityFlag, without_bad
+from algorithms.measurement import QualityFlag, without_bad
 
 EXTRACTORS = discover_extractors()
 
@@ -74,13 +74,6 @@ def test_bad_pixels_do_not_count_or_the_mask_is_refused(case):
             extractor.measure(observations, wrong)
 
 
-def test_wrong_observations_are_refused_as_by_extract(case):
-    extractor, observations = case
-    for wrong in (3.0, observations[None], observations[:0], observations.astype(str), None):
-        with pytest.raises(ValueError, match=r"got|hold|empty"):
-            extractor.measure(wrong)
-
-
 def test_a_bad_pixel_becomes_the_median_of_its_good_neighbours():
     frame = np.arange(25.0).reshape(5, 5)
     bad = np.zeros((5, 5), dtype=np.bool_)
@@ -126,8 +119,3 @@ def test_rows_of_different_lengths_are_refused_as_by_extract() -> None:
     for read in (BasicCentroid().extract, BasicCentroid().measure):
         with pytest.raises(ValueError, match=r"\(N, H, W\)"):
             read(ragged)
-
-
-def test_shapes_that_do_not_agree_are_refused():
-    with pytest.raises(ValueError, match="covariance"):
-        Measurement(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2, dtype=np.int64))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 from algorithms.angles import sun_from_angles
-from algorithms.compensations.interference.sun_and_earth import SunAndEarth
 from algorithms.contract import (
     AboutExtractor,
     Extractor,
@@ -21,9 +20,8 @@ from algorithms.contract import (
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry
-from algorithms.models.geometric.panoramic_temperature import WarmCells
 from algorithms.models.geometric.standard_projection import StandardProjection
-from algorithms.pipeline import Pipeline, check_features, extract_features, in_detector_coordinates
+from algorithms.pipeline import Pipeline, check_features, extract_features
 
 DESIGN = SensorGeometry(focal_length_mm=0.3, pixel_pitch_mm=0.01, centre_px=(20.0, 16.0))
 
@@ -104,37 +102,3 @@ def test_a_row_is_found_or_not():
 def test_an_extractor_that_breaks_its_contract_is_named(given):
     with pytest.raises(ValueError, match=r"given.*float64.*\(4.*2\)"):
         extract_features(Given(given), np.zeros(4))
-
-
-def test_origins_belong_to_spots_and_to_every_sample():
-    given = np.arange(8.0).reshape(4, 2)
-    origins = np.tile([10.0, 20.0], (4, 1))
-    np.testing.assert_array_equal(
-        extract_features(Given(given), np.zeros(4), origins), given + origins
-    )
-    with pytest.raises(ValueError, match=r"origin_px.*\(4.*2\).*\(3.*2\)"):
-        extract_features(Given(given), np.zeros(4), origins[:3])
-
-    @dataclass(frozen=True)
-    class Balance(Given):
-        about: ClassVar = replace(Given.about, kind=FeatureKind.BALANCE)
-
-    np.testing.assert_array_equal(extract_features(Balance(given), np.zeros(4), origins), given)
-
-
-def test_of_a_list_the_spots_that_are_there_are_moved_by_the_window_s_origin() -> None:
-    given = np.array([[1.0, 2.0, 50.0, 3.0, 4.0, 60.0], [5.0, 6.0, 70.0, 0.0, 0.0, 0.0]])
-    found = in_detector_coordinates(given, FeatureKind.SPOTS, [[10, 20], [30, 40]])
-    np.testing.assert_array_equal(
-        found, [[11.0, 22.0, 50.0, 13.0, 24.0, 60.0], [35.0, 46.0, 70.0, 0.0, 0.0, 0.0]]
-    )
-    assert given[0, 0] == 1.0, "what the extractor keeps is left alone"
-
-
-def test_a_pipeline_reads_the_columns_that_any_of_its_stages_reads() -> None:
-    cells = WarmCells(((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8)))
-    clean = SunAndEarth(((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)))
-    assert Pipeline(DirectSignals(), cells).context == ("temperature_K",)
-    both = Pipeline(DirectSignals(), cells, (clean,))
-    assert both.context == tuple(sorted({*clean.about.context, "temperature_K"}))
-    assert len(both.context) > 1

@@ -71,14 +71,6 @@ def test_saturated_readings_stay_one_plateau_above_all_others():
     assert found[3, 2] > np.delete(found.ravel(), np.arange(26, 30)).max()
 
 
-def test_no_reading_is_changed_in_place_and_missing_ones_stay_missing():
-    correction = ReferenceCorrection(np.ones(4), np.full(4, 11.0))
-    readings = np.array([[1.0, np.nan, 3.0, 4.0]])
-    found = correction.correct(readings)
-    np.testing.assert_allclose(found, [[0.0, np.nan, 2.0, 3.0]])
-    np.testing.assert_array_equal(readings, [[1.0, np.nan, 3.0, 4.0]])
-
-
 @pytest.mark.parametrize(
     ("dark", "flat", "message"),
     [
@@ -107,9 +99,3 @@ def test_observations_of_another_detector_are_refused(shape, origin, message):
     correction = ReferenceCorrection(np.zeros((8, 10)), np.ones((8, 10)))
     with pytest.raises(ValueError, match=message):
         correction.correct(np.zeros(shape), origin)
-
-
-def test_a_profile_has_no_windows() -> None:
-    correction = ReferenceCorrection(np.zeros(8), np.ones(8), pixels=True)
-    with pytest.raises(ValueError, match="only frames have windows; leave origin_px=None"):
-        correction.correct(np.zeros((2, 4)), [[0, 0], [4, 0]])

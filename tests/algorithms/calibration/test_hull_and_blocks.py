@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
-from algorithms.calibration.blocks import best_candidate, folds, folds_along, splits
-from algorithms.calibration.hull import Hull, median_spacing
+from algorithms.calibration.blocks import folds
+from algorithms.calibration.hull import Hull
 from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.contract import UnusableDataError
 
@@ -73,12 +73,6 @@ def test_directions_are_held_by_their_cone_and_all_of_them_by_a_sphere():
         Hull.of_directions(np.column_stack([sphere[:, :1] * 0, sphere[:, 1:]]), "test")
 
 
-def test_spacing_is_the_usual_distance_to_the_next():
-    axis = np.linspace(0.0, 9.0, 4)
-    grid = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-    assert median_spacing(grid) == pytest.approx(3.0)
-
-
 def test_folds_are_alike_in_size_and_in_place():
     sun = cone(50.0, 441)
     fold = folds(sun)
@@ -94,37 +88,6 @@ def test_repeats_and_neighbours_are_left_out_together():
     np.testing.assert_array_equal(folds(np.repeat(sun, 4, axis=0)), np.repeat(folds(sun), 4))
     close = sun + 1e-11 * np.random.default_rng(4).standard_normal(sun.shape)
     np.testing.assert_array_equal(folds(close), folds(sun))
-
-
-def test_what_is_fitted_is_not_left_out():
-    fold = folds(cone(50.0, 100))
-    left = np.zeros(100, dtype=int)
-    for fitted, left_out in splits(fold):
-        assert not (fitted & left_out).any()
-        assert (fitted | left_out).all()
-        left += left_out
-    np.testing.assert_array_equal(left, fold >= 0)
-    assert splits(np.zeros(5, dtype=np.int64)) == []
-
-
-def test_along_an_axis_the_ends_are_always_fitted():
-    values = np.random.default_rng(3).uniform(-5.0, 5.0, 500)
-    fold = folds_along(values)
-    assert fold[np.argmin(values)] == fold[np.argmax(values)] == -1
-    assert set(fold) == {-1, 0, 1, 2, 3, 4}
-    assert (fold == -1).mean() < 0.1
-
-
-def test_the_best_is_the_first_of_the_smallest():
-    assert best_candidate(["b", "a", "c"], {"a": 1.0, "b": 1.0, "c": 2.0}.get, "test") == ("b", 1.0)
-    with pytest.raises(UnusableDataError, match="test needs samples of several poses"):
-        best_candidate([1, 2], lambda _: math.nan, "test")
-
-    def refuse(_):
-        raise UnusableDataError("too few of them")
-
-    with pytest.raises(UnusableDataError, match="too few of them"):
-        best_candidate([1], refuse, "test")
 
 
 #: No places between poses: errors on samples left out as they are.

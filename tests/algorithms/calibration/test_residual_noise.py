@@ -33,12 +33,5 @@ def test_covariance_is_that_of_fits_to_drawn_noise(pose, feature):
     np.testing.assert_allclose(np.mean(stated, axis=0), np.var(found, axis=0), rtol=0.1)
 
 
-def test_few_residuals_are_taken_for_one_noise():
-    derivatives, off = DERIVATIVES[:8], RNG.normal(size=(8, 2))
-    flat = derivatives.reshape(-1, 4)
-    expected = np.linalg.inv(flat.T @ flat) * (off**2).sum() / 12
-    np.testing.assert_allclose(parameter_covariance(derivatives, off, MOVED[:8]), expected)
-
-
 def test_a_perfect_fit_has_no_errors():
     assert not parameter_covariance(DERIVATIVES, np.zeros((POSES, 2)), MOVED).any()

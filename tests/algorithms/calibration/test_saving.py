@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from algorithms.calibration.documents import digest_of
-from algorithms.calibration.quality import FitQuality, Parameter, data_digest
 from algorithms.calibration.saving import (
     SCHEMA,
     UnreadableCalibrationError,
@@ -176,26 +175,6 @@ def test_a_file_that_is_none_is_named(tmp_path, text):
     with pytest.raises(UnreadableCalibrationError, match=r"JSON|expected a document"):
         load(path)
     assert SCHEMA.endswith("calibration")
-
-
-def test_quality_names_its_parameters():
-    quality = FitQuality(9, 0.1, "0" * 32, parameters=(Parameter("tilt", 1.0, 0.5, "deg"),))
-    assert quality.parameter("tilt").interval() == pytest.approx((1 - 0.98, 1 + 0.98), abs=1e-3)
-    with pytest.raises(KeyError, match="tilt"):
-        quality.parameter("turn")
-
-
-def test_a_digest_is_of_numbers_names_and_order():
-    features, sun = np.arange(6.0).reshape(3, 2), np.eye(3)
-    first = data_digest(features, sun, {"time_s": np.arange(3.0)})
-    assert first == data_digest(features.copy(), sun, {"time_s": np.arange(3.0)})
-    others = [
-        data_digest(features[::-1], sun, {"time_s": np.arange(3.0)}),
-        data_digest(features, sun, {"time_s": np.arange(3.0) + 1e-12}),
-        data_digest(features, sun, {"illumination": np.arange(3.0)}),
-        data_digest(features, sun, {}),
-    ]
-    assert len({first, *others}) == 5
 
 
 def test_a_fitted_vector_is_kept_to_the_last_bit(geometry, calibration_for):

@@ -49,14 +49,6 @@ def test_a_parameter_that_is_no_number_text_or_table_is_refused(held: object) ->
         stage_document(Holding(held))
 
 
-@pytest.mark.parametrize("held", [np.int64(5), np.float64(2.5), np.bool_(1), np.str_("median")])
-def test_a_numpy_scalar_is_written_as_the_plain_value(held: np.generic) -> None:
-    stored = stage_document(Holding(held))["parameters"]["held"]
-    assert stored == held
-    assert type(stored) in {int, float, bool, str}
-    assert json.loads(json.dumps(stored)) == held
-
-
 def test_a_list_that_does_not_name_its_kind_is_refused(pipeline: Pipeline) -> None:
     stored = json.loads(json.dumps(document(pipeline)))
     stored["extractor"]["parameters"]["window_px"] = [9]

@@ -10,11 +10,7 @@ from algorithms.chain import Chain
 from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.models.geometric.standard_projection import StandardProjection
-from algorithms.models.non_physical.polynomial import SurfacePolynomial
-from benchmark.simulator.masks.apertures import Aperture, Mask
-from benchmark.simulator.optics.projection import Camera
 
-UP = [[0.0, 0.0, 1.0]]
 THICK = SensorGeometry(
     focal_length_mm=1.2,
     pixel_pitch_mm=0.005,
@@ -79,29 +75,6 @@ def test_counted_from_the_lower_face_the_mask_must_be_compensated(theta, phi):
     mask = MaskShadow(h, pitch, 0.1, 0.3, (250.0, 240.0)).fit(spot, sun[None])
     assert separation_deg(alone.predict(mask.transform(spot)), sun[None])[0] < 0.005
     assert separation_deg(alone.predict(spot), sun[None])[0] > 0.5
-
-
-@pytest.mark.parametrize(("theta", "phi"), ANGLES)
-def test_the_simulator_draws_a_thick_mask_from_its_middle(theta, phi):
-    """Both rims of its projection lie where eq:shadcomp has them, their mean at the drawn h."""
-    sun = direction(theta, phi)
-    camera = Camera(1.2, Mask((Aperture("round", 0.3, 0.3),), 0.1))
-    lit = camera.project(sun[None])
-    lower, upper = np.average(lit.rims_mm[:, 0], axis=1, weights=lit.light[0])
-    slope = sun[:2] / sun[2]
-    np.testing.assert_allclose(lower, 1.15 * slope, atol=1e-6)
-    np.testing.assert_allclose(upper, 1.25 * slope, atol=1e-6)
-
-
-def test_a_model_fitted_behind_it_finds_the_same():
-    """A factor on all spots is no matter to a model that fits its own height."""
-    suns = np.stack([direction(theta, 45.0 * k) for theta in (10, 30, 50) for k in range(8)])
-    slopes = suns[:, :2] / suns[:, 2:]
-    spots = slopes * 1.2 / 0.005 + (250.0, 240.0)
-    mask = MaskShadow.for_sensor(THICK, FeatureKind.SPOT).fit(spots, suns)
-    alone = SurfacePolynomial(degree=1, target="tangent").fit(spots, suns)
-    behind = SurfacePolynomial(degree=1, target="tangent").fit(mask.transform(spots), suns)
-    assert separation_deg(behind.predict(mask.transform(spots)), alone.predict(spots)).max() < 1e-6
 
 
 def test_a_drawn_distance_that_cannot_be_is_named():

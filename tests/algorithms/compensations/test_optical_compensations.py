@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.angles import separation_deg, sun_from_angles
-from algorithms.calibration.saving import stage_document, stage_of
+from algorithms.angles import separation_deg
 from algorithms.compensations.environment.solar_disc import SolarDiscBias
 from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.compensations.optics.refraction import Refraction
-from algorithms.contract import FeatureKind, SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.frames.centroid import BasicCentroid
-from algorithms.models.geometric.standard_projection import StandardProjection
 from algorithms.models.non_physical.polynomial import SurfacePolynomial
 from algorithms.pipeline import Pipeline
 
@@ -120,19 +115,6 @@ def test_nothing_passes_a_mask_thicker_than_its_hole_at_that_angle():
     assert np.isnan(found).any(axis=1).tolist() == [False, True]
 
 
-def test_a_drawing_counts_its_distance_from_the_masks_middle():
-    drawn = SensorGeometry(
-        focal_length_mm=2.0,
-        pixel_pitch_mm=0.01,
-        centre_px=(0.0, 0.0),
-        mask_thickness_mm=0.2,
-        aperture_width_mm=0.4,
-    )
-    assert MaskShadow.for_sensor(drawn, FeatureKind.SPOT).focal_length_mm == pytest.approx(1.9)
-    with pytest.raises(UnsuitableDesignError, match="a thickness; got 0"):
-        MaskShadow.for_sensor(replace(drawn, mask_thickness_mm=0.0), FeatureKind.SPOT)
-
-
 @settings(deadline=None, derandomize=True, max_examples=40)
 @given(theta=st.floats(0.0, 70.0), phi=st.floats(0, 360), disc=st.floats(0.1, 3.0))
 def test_the_outlines_middle_is_moved_to_the_suns(theta, phi, disc):
@@ -160,15 +142,3 @@ def test_a_centroid_by_light_is_not_moved_by_the_disc():
     outline = np.tan(np.radians([theta - 1.0, theta + 1.0])).mean()
     assert abs(mean - np.tan(np.radians(theta))) < 2e-4
     assert outline - np.tan(np.radians(theta)) > 2e-3
-
-
-def test_a_chain_of_stages_is_kept_in_order():
-    stage = Refraction(2.0, 0.01, layers=((0.5, 1.5),)).fit([[1.0, 2.0]], UP)
-    model = StandardProjection(2.0, 0.01).fit([[1.0, 2.0]], UP)
-    kept = stage_of(stage_document(stage), {"optical": Refraction})
-    spots = np.array([[10.0, 20.0], [150.0, -30.0]])
-    np.testing.assert_array_equal(
-        model.predict(kept.transform(spots)), model.predict(stage.transform(spots))
-    )
-    assert separation_deg(model.predict(stage.transform([[0.0, 0.0]])), UP)[0] == 0.0
-    assert sun_from_angles([[0.0, 0.0]]).tolist() == UP

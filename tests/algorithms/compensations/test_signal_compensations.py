@@ -94,14 +94,6 @@ def test_temperature_coefficients_lie_in_their_intervals():
     assert 0.93 <= np.mean(held) <= 0.97
 
 
-def test_one_temperature_tells_nothing_of_it():
-    sun = spread(100)
-    with pytest.raises(UnusableDataError, match="different temperatures"):
-        TemperatureDrift(CUBE).fit(
-            np.maximum(sun @ NORMALS, 0), sun, {"temperature_K": np.full(100, 300.0)}
-        )
-
-
 # Albedo
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from algorithms.angles import separation_deg, sun_from_angles
 from algorithms.compensations.interference.slit_shadow import SlitShadow
-from algorithms.contract import FeatureKind, SensorGeometry, UnsuitableDesignError
+from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.discovery import discover_chains
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from benchmark import datasets
@@ -70,17 +69,3 @@ def test_the_simulated_thick_slit_is_inverted_exactly_without_gap_and_errors():
         off[name] = float(separation_deg(made.fit(balances, sun).predict(balances), sun).max())
     assert off["slit-shadow + spm"] < 1e-4
     assert off["spm"] > 0.5
-
-
-@pytest.mark.parametrize(
-    ("other", "said"),
-    [
-        ({"mask_thickness_mm": 0.0}, "mask that has a thickness"),
-        ({"slits": ((0.0, 45.0, WIDTH),)}, "two slits of one width"),
-        ({"slits": ((0.0, 45.0, WIDTH), (0.0, 45.0, WIDTH))}, "two slits of one width"),
-        ({"slits": ((0.0, 45.0, WIDTH), (0.0, -45.0, 1.0))}, "two slits of one width"),
-    ],
-)
-def test_other_slits_are_refused(other, said):
-    with pytest.raises(UnsuitableDesignError, match=said):
-        SlitShadow.for_sensor(replace(DESIGN, **other), FeatureKind.BALANCE)

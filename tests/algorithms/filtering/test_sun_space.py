@@ -10,7 +10,6 @@ from kalman_runs import (
     GYROSCOPE,
     SPACES,
     STEP_S,
-    cube,
     drawn,
     first_covariance,
     pinhole,
@@ -18,7 +17,6 @@ from kalman_runs import (
 )
 from scipy.stats import chi2
 
-from algorithms.filtering.drift import GAINS, MOTION, Drift
 from algorithms.filtering.filters import (
     CUBATURE,
     AdaptiveKalman,
@@ -49,20 +47,6 @@ def test_a_body_that_turns_sees_the_sun_turn_back(name: str) -> None:
         expected = turned_exactly(before[:9].reshape(3, 3), turn)
         np.testing.assert_allclose(found[:9].reshape(3, 3), expected, atol=1e-14)
         np.testing.assert_array_equal(found[9:], before[9:])
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_moved_and_away_undo_each_other(name: str) -> None:
-    space, rng = SPACES[name], np.random.default_rng(6)
-    states = some_states(space)
-    errors = rng.normal(0.0, 0.2, (len(states), space.errors))
-    again = space.add_errors(states, errors)
-    np.testing.assert_allclose(space.errors_between(again, states), errors, atol=1e-13)
-    axes = again[:, :9].reshape(-1, 3, 3)
-    np.testing.assert_allclose(
-        axes @ axes.transpose(0, 2, 1), np.eye(3)[None] * np.ones((7, 1, 1)), atol=1e-14
-    )
-    np.testing.assert_allclose(np.linalg.det(axes), 1.0, atol=1e-14)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -213,31 +197,6 @@ def mixed_errors(space, by, runs, first) -> np.ndarray:
     return np.array(found)
 
 
-def test_readings_slope_with_the_heads_turn_as_differences_do() -> None:
-    space = SPACES["turned"]
-    states = some_states(space)
-    states[:, -3:] = 0.0
-    sensitivity = space.observe(states, KNOWN)[1]
-    for column in range(5, 8):
-        error = np.zeros((len(states), space.errors))
-        error[:, column] = 1e-6
-        read = space.predict_readings(space.add_errors(states, error), KNOWN)
-        read = read - space.predict_readings(space.add_errors(states, -error), KNOWN)
-        np.testing.assert_allclose(sensitivity[:, :, column], read / 2e-6, atol=2e-5)
-
-
-def test_a_turned_head_sees_what_turning_the_sun_shows() -> None:
-    space = SPACES["turned"]
-    states = some_states(space)
-    still = states.copy()
-    still[:, -3:] = 0.0
-    for n, state in enumerate(states):
-        still[n, 6:9] = turned_exactly(state[None, 6:9], state[-3:])[0]
-    np.testing.assert_allclose(
-        space.predict_readings(states, KNOWN), space.predict_readings(still, KNOWN), rtol=1e-12
-    )
-
-
 def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
     """An autoregression of 0.8 lasts for nine steps: 100 runs, with and without knowing it."""
     space, first = SPACES["spot"], first_covariance(SPACES["spot"])
@@ -259,32 +218,6 @@ def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
     # the estimate so far has the error of the reading, too: innovations are somewhat less
     assert 0.4 < innovations[40:].mean() < 1.1
     assert ignoring[40:].mean() / 2.0 > 2.0
-
-
-def test_a_reading_that_no_direction_explains_begins_nothing() -> None:
-    space, by = SPACES["faces"], ExtendedKalman()
-    sun = np.array([[0.6, 0.0, 0.8]])
-    known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
-    read = space.predict_readings(space.states_towards(sun), known)[0]
-    starts = space.states_towards(np.vstack([np.eye(3), -np.eye(3), sun]))
-    begun = space.start_belief(by, starts, read, known)
-    assert begun is not None
-    np.testing.assert_allclose(begun.states[0, 6:9], sun[0], atol=2e-3)
-    assert space.start_belief(by, starts, read + 20.0 * np.arange(6), known) is None
-
-
-def test_what_is_considered_explains_a_first_reading_that_its_noise_does_not() -> None:
-    gains = [Drift(GAINS + k, 0.02, 0.0) for k in range(6)]
-    space = SunSpace(cube(), 1e-6 * np.eye(6), GYROSCOPE, gains)
-    considered = tuple(range(MOTION, MOTION + 6))
-    by = ExtendedKalman(considered)
-    sun = np.array([[0.6, 0.0, 0.8]])
-    known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
-    read = space.predict_readings(space.states_towards(sun), known)[0]
-    read *= np.array([1.02, 1.0, 1.0, 1.0, 0.98, 1.0])  # aged by a deviation each
-    starts = space.states_towards(sun)
-    assert space.start_belief(by, starts, read, known, considered) is not None
-    assert space.start_belief(by, starts, read + 5.0 * np.eye(6)[1], known, considered) is None
 
 
 def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:
