@@ -7,7 +7,7 @@ import pytest
 from scores import STUDY, pipeline
 
 from registry.answer import Answer, RankedArchitecture
-from registry.comparison import calibration_name, contradictions
+from registry.comparison import contradictions
 from registry.measured_pipelines import Measurements, Score
 from registry.recommendation import recommend
 from registry.studies import Facts
@@ -152,16 +152,6 @@ def test_failed_runs_and_numbers_that_are_none_do_not_count() -> None:
     assert Score("nominal", 1.0, bound_deg=math.inf).bound_deg is None
 
 
-def test_equals_stand_in_the_order_of_the_taxonomy_and_share_a_rank(
-    survey: Facts, facts_of: FactsOf
-) -> None:
-    masks = survey.taxonomy.values("mask")
-    facts = facts_of([study(mask=[mask]) for mask in reversed(masks)])
-    answer = recommend({"detector": "OI", "task": "Cost"}, facts=facts)
-    assert [one.place.architecture[1] for one in answer.architectures] == list(masks)
-    assert {one.rank for one in answer.architectures} == {1}
-
-
 def test_what_nobody_built_comes_last_however_small_its_error(facts_of: FactsOf) -> None:
     rows = [row(rms_deg=0.5), row(dataset="e", mask="L-Slit", rms_deg=0.001)]
     for sort in ("evidence", "error"):
@@ -210,18 +200,3 @@ def test_compensations_are_stages_that_a_study_stands_for_without_a_model(
         ("OCM",): {"S0", "S2"},
         ("LUT",): {"S2"},
     }
-
-
-@pytest.mark.parametrize(
-    ("extractor", "stages", "measured", "name"),
-    [
-        ("BCTM", ("SPM",), ("bctm", "spm"), "bctm + spm"),
-        ("None", ("SECM/Solar", "Camera"), ("mirror", "solar + camera"), "mirror + solar + camera"),
-        ("BCTM", ("OCM", "LUT"), None, "BCTM + OCM + LUT (survey labels)"),
-        ("None", ("None",), None, "no method stated (survey labels)"),
-    ],
-)
-def test_a_calibration_has_the_name_of_its_pipeline_or_else_the_survey_s_labels(
-    extractor: str, stages: tuple[str, ...], measured: tuple[str, str] | None, name: str
-) -> None:
-    assert calibration_name(extractor, stages, measured) == name

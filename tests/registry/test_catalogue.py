@@ -4,17 +4,14 @@ import pytest
 from stand_ins import (
     BCTM,
     EXTRACTORS,
-    GLASS,
     MODELS,
     SPM,
     SPOT,
-    chain,
     implementation,
     stand_ins,
 )
 
 from algorithms.contract import Observation
-from registry.catalogue import catalogue
 from registry.studies import Facts
 from registry.taxonomy import InvalidValueError
 
@@ -58,20 +55,3 @@ def test_the_catalogue_refuses_what_it_cannot_place(survey: Facts) -> None:
         stand_ins(survey, [BCTM], []).extractor("bctn")
     with pytest.raises(InvalidValueError, match="did you mean 'spm'"):
         stand_ins(survey, [], [SPM]).model("spn")
-
-
-def test_a_chain_is_summed_up_by_its_compensations_and_its_model(survey: Facts) -> None:
-    assert GLASS.__doc__ == "Says what it is."  # one paragraph, and nothing behind it
-    (entry,) = stand_ins(survey, [], [chain(GLASS, SPM)]).implementations("model")
-    assert entry.summary == "Says what it is. Then spm."
-
-
-def test_the_catalogue_holds_what_discovery_finds() -> None:
-    known = catalogue()
-    assert known.extractors
-    for name, extractor in known.extractors.items():
-        assert extractor.about.name == name
-        assert extractor in known.extractors_for(extractor.about.taxonomy)
-    for name, model in known.models.items():
-        assert model.about.name == name
-    assert all(entry.summary for entry in known.implementations())

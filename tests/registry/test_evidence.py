@@ -53,13 +53,6 @@ def test_a_dimension_may_be_off_by_half(facts_of: Build, height: str, alike: boo
     assert (found == []) is alike
 
 
-def test_of_two_figures_one_that_fits_is_enough(facts_of: Build) -> None:
-    study, facts = told(facts_of([{}]))
-    rows = tuple(RunFact("S0", "openings", value, "page", "x", "P1") for value in ("6", "1"))
-    facts = dataclasses.replace(facts, run_facts={"S0": rows})
-    assert evidence.differing(study, facts, DataSet("d", design=PINHOLE), PLACE) == []
-
-
 def test_four_of_ten_unknown_facts_are_too_many(facts_of: Build) -> None:
     at = {"d": DataSet("d", design=PINHOLE)}
     three = {"pitch_um": "10", "array_px": "512", "fov_deg": "120"}

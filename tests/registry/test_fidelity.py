@@ -1,7 +1,6 @@
 """A run is graded by what departs from its study, and stands where the study's purpose is shown."""
 
 import dataclasses
-import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -28,7 +27,7 @@ from api.service.measurements import Measurements
 from benchmark.plan.combinations import scorable_plan, study_plans
 from benchmark.plan.parts import every_part
 from benchmark.plan.shown import data_sets
-from registry.fidelity.grading import Grade, tally, tally_text
+from registry.fidelity.grading import Grade
 from registry.fidelity.particulars import (
     CompensatedModel,
     MethodVariant,
@@ -192,23 +191,6 @@ def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts
     found = resolved(facts, aloft, on=on, models=[drift])
     assert parts(found) == ["sensor"]
     assert found.pipelines[0].settings == (DatasetCondition("PD-Lens", "nominal", ("flight",)),)
-
-
-def test_nothing_runs_of_a_study_without_a_simulated_sensor(facts_of: Build) -> None:
-    found = resolved(facts_of([study_of()]), on=())
-    assert (found.fidelity.grade, found.state, found.best_pipeline) == ("none", "none", None)
-
-
-def test_grades_are_counted_nearest_first() -> None:
-    grades: list[Grade] = ["close", "faithful", "close"]
-    assert tally(grades) == {"faithful": 1, "assumed": 0, "close": 2, "stand-in": 0, "none": 0}
-    assert re.findall(r"\d+|faithful|assumed|close|stand-in", tally_text(grades)) == [
-        *("1", "faithful"),
-        *("0", "assumed"),
-        *("2", "close"),
-        *("0", "stand-in"),
-        "0",
-    ]
 
 
 @pytest.fixture(scope="module")

@@ -208,22 +208,6 @@ def test_the_sunburst_puts_each_model_in_its_category_and_ring(survey: Facts) ->
     assert found.left_out == ()
 
 
-def test_grouped_shows_categories_instead_of_models(survey: Facts) -> None:
-    found = chart("cross-analysis", grouped=True, facts=survey)
-    assert found.levels == ("task", "detector", "mask", "model_category", "extractor_family")
-
-
-def test_answers_are_plain_data(survey: Facts) -> None:
-    answer = chart("task", {"task": "Latency"}, facts=survey).to_dict()
-    assert answer["chart"] == "task"
-    assert answer["levels"] == ["task", "detector", "mask"]
-    nodes = answer["nodes"]
-    assert isinstance(nodes, list)
-    (task,) = (node for node in nodes if node["level"] == "task")
-    assert task["id"] == "task:Latency"
-    assert task["count"] == len(task["studies"]) == answer["studies"]
-
-
 @pytest.mark.parametrize(
     ("levels", "where", "counting", "message"),
     [

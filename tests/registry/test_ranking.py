@@ -35,13 +35,6 @@ def test_a_measured_task_goes_by_the_most_accurate_pipeline(task: str, value: fl
     assert task_measure(task, place_of(), None, math.inf, 2.0).cost == math.inf
 
 
-def test_a_wider_field_costs_less() -> None:
-    wide, narrow = (
-        task_measure("FOV", place_of(), pipeline(half_fov_deg=half), 0.1, 1.0) for half in (70, 30)
-    )
-    assert wide.cost < narrow.cost
-
-
 @pytest.mark.parametrize(("task", "column"), [("Power", "power_mw"), ("Volume", "mass_g")])
 def test_a_median_is_of_three_distinct_products_at_least(task: str, column: str) -> None:
     known = [product(name, **{column: number}) for name, number in zip("abc", (9.0, 1.0, 4.0))]  # noqa: B905

@@ -5,13 +5,7 @@ from collections.abc import Callable, Mapping
 import pytest
 
 from registry.flows import allowed_values, chart, flows
-from registry.studies import AttributeValue, Facts, Study
-from registry.taxonomy import (
-    InvalidValueError,
-    Taxonomy,
-    TaxonomyEntry,
-    attribute_of,
-)
+from registry.studies import Facts
 from survey_data.nearest import nearest_name
 
 Rows = list[Mapping[str, list[str]]]
@@ -88,81 +82,9 @@ def test_a_filter_on_what_a_model_implies_is_one_on_models(facts_of: Build) -> N
     assert [node.id for node in found.nodes] == ["model:ECM/Noise", "calibration:online"]
 
 
-def test_levels_are_at_least_two_and_may_be_two(facts_of: Build) -> None:
-    assert flows(["detector", "mask"], facts=facts_of(TABLE)).levels == ("detector", "mask")
-    for wrong in ([], ["mask"], ["mask", "task", "mask"]):
-        with pytest.raises(InvalidValueError, match="two or more different"):
-            flows(wrong, facts=facts_of(TABLE))
-
-
-def entry(value: str, category: str = "C", calibration: str = "") -> TaxonomyEntry:
-    return TaxonomyEntry("model", value, f"the {value}", category, "", calibration)
-
-
-def test_a_taxonomy_keeps_the_order_given_and_what_it_implies() -> None:
-    made = Taxonomy(
-        [
-            entry("ECM", "P", "online"),
-            entry("None", "N"),
-            entry("LUT", "L"),
-            entry("ECM/x", "P", "offline"),
-        ]
-    )
-    assert made.attributes == ("model",)
-    assert made.levels == ("model", "model_category", "calibration")
-    assert made.values("model") == ("ECM", "None", "LUT", "ECM/x")
-    assert made.values("model_category") == ("P", "N", "L")
-    assert made.values("calibration") == ("online", "None", "offline")
-    assert made.name("calibration", "online") == "Online calibration"
-    assert made.name("model", "LUT") == "the LUT"
-    assert made.name("model_category", "P") == "P"
-    assert made.kinds("model", "ECM") == ("ECM", "ECM/x")
-    assert made.kinds("model", "ECM/x") == ("ECM/x",)
-    with pytest.raises(InvalidValueError, match="did you mean 'LUT'"):
-        made.entry("model", "LUTT")
-    with pytest.raises(InvalidValueError, match="one of model, model_category, calibration"):
-        made.values("mask")
-
-
-def test_attributes_are_read_from_what_implies_them() -> None:
-    assert attribute_of("calibration") == attribute_of("model_category") == "model"
-    assert attribute_of("extractor_family") == "extractor"
-    assert attribute_of("mask") == "mask"
-
-
 @pytest.mark.parametrize(
     ("text", "found"),
     [("ABCD", "abcd"), ("abxy", "abcd"), ("axyz", None), ("", None), ("slt", "Slit")],
 )
 def test_half_alike_is_near(text: str, found: str | None) -> None:
     assert nearest_name(text, ["abcd", "Slit"]) == found
-
-
-def study(**values: list[str]) -> Study:
-    cells = {
-        name: tuple(AttributeValue(value, "title", "", "") for value in found)
-        for name, found in values.items()
-    }
-    return Study("S", "", "", None, "", "", "", "unknown", "", cells, {"mask": "why"})
-
-
-def test_of_several_numbers_the_best_counts() -> None:
-    one = study(accuracy_deg=["0.5", "0.02", "0.1"], fov_deg=["60", "128", "90"])
-    assert one.number("accuracy_deg") == 0.02
-    assert one.number("fov_deg") == 128.0
-    assert study().number("fov_deg") is None
-    assert study(mask=["Slit", "Lens", "Slit"]).of("mask") == ("Slit", "Lens")
-    assert study().of("mask") == ()
-    assert study().to_dict()["attributes"] == [
-        {
-            "attribute": "mask",
-            "value": "",
-            "basis": "unknown",
-            "source": "",
-            "source_name": "",
-            "note": "why",
-            "role": "",
-            "name_in_study": "",
-            "nearest": False,
-        }
-    ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from types import SimpleNamespace
 from typing import Any
 
@@ -62,31 +61,6 @@ def test_a_value_that_is_none_of_its_attribute_names_the_study(
         study_from({"studies": [STUDY], "attributes": [cell(attribute, value)]})
 
 
-def test_tables_that_contradict_each_other_give_no_facts(
-    texts: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def strange(names: tuple[str, ...]) -> Any:
-        assert {"studies", "attributes"} <= set(names)
-        return SimpleNamespace(**{**vars(texts), "attributes": [cell("mask", "Slit")]})
-
-    monkeypatch.setattr(studies, "load_texts", strange)
-    monkeypatch.setattr(studies, "_facts", studies._facts.__wrapped__)  # keeps what is cached
-    with pytest.raises(FactsError, match=r"contradict each other: attributes of .*Doe2030"):
-        facts("survey")
-
-
 def test_a_study_that_is_in_no_table_yet_has_what_its_rows_say() -> None:
     found = study_from({"studies": [STUDY], "attributes": [cell("mask", "Slit")]})
     assert (found.key, found.edition, found.of("mask")) == ("Doe2030", "extension", ("Slit",))
-
-
-def test_confirmations_stand_with_their_study_in_their_order(texts: Any) -> None:
-    rows = [
-        {"study": "Doe2030", "name": name, "date": "2030-02-28", "confirms": said, "source": ""}
-        for name, said in (("Jane Doe", "every cell"), ("Max Moe", "the mask"))
-    ]
-    found = facts_with(texts, verifications=rows).study("Doe2030").verifications
-    assert [one.to_dict() for one in found] == [
-        {name: row[name] for name in ("name", "date", "confirms", "source")} for row in rows
-    ]
-    assert [each.name for each in fields(found[0])] == ["name", "date", "confirms", "source"]

@@ -1,6 +1,5 @@
 """Every study carries every cell of the survey's tables, with its provenance."""
 
-import dataclasses
 from types import SimpleNamespace
 
 import pandas as pd
@@ -40,37 +39,9 @@ def test_an_attribute_is_stated_or_unknown_but_not_both(survey: Facts) -> None:
         assert not s.values.keys() & s.unknown.keys()
 
 
-def test_the_detail_of_a_study_shows_empty_cells_and_numbers(survey: Facts) -> None:
-    found = study("Mobasser2001")
-    cells = found.to_dict()["attributes"]
-    assert isinstance(cells, list)
-    assert {
-        "attribute": "error",
-        "value": "",
-        "basis": "unknown",
-        "source": "",
-        "source_name": "",
-        "note": "",
-        "role": "",
-        "name_in_study": "",
-        "nearest": False,
-    } in cells
-    assert found.number("accuracy_deg") is None
-    assert survey.study("Minor2010").number("accuracy_deg") == 0.1
-    with pytest.raises(InvalidValueError, match="fov_deg"):
-        found.number("fov")
-
-
 def test_an_unknown_study_names_the_nearest() -> None:
     with pytest.raises(InvalidValueError, match="did you mean 'Chang2008'"):
         study("Chng2008")
-
-
-def test_a_study_cannot_be_changed() -> None:
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        study("Chang2008").year = 1  # type: ignore[misc]
-    with pytest.raises(TypeError):
-        study("Chang2008").values["mask"] = ()  # type: ignore[index]
 
 
 def test_tables_that_contradict_each_other_are_refused() -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from registry.studies import Facts
-from registry.taxonomy import InvalidValueError, Taxonomy, TaxonomyEntry
+from registry.taxonomy import InvalidValueError
 
 
 def test_the_survey_has_33_models_20_extractors_and_ten_detectors(survey: Facts) -> None:
@@ -63,19 +63,3 @@ def test_parents_stand_for_their_kinds(survey: Facts) -> None:
     assert survey.taxonomy.kinds("model", "ECM") == ("ECM", "ECM/Noise", "ECM/Angular loss")
     assert survey.taxonomy.kinds("model", "ICM") == ("ICM", "ICM/Albedo", "ICM/Shadow")
     assert survey.taxonomy.kinds("model", "SPM") == ("SPM",)
-
-
-def test_every_model_has_one_category_and_one_kind_of_calibration(survey: Facts) -> None:
-    taxonomy = survey.taxonomy
-    online = {"ACM", "ECM", "ECM/Noise"}  # by the sections of the survey that describe them
-    for value in taxonomy.values("model"):
-        assert taxonomy.derived_values("model_category", value) == taxonomy.category("model", value)
-        kind = taxonomy.derived_values("calibration", value)
-        assert kind == ("None" if value == "None" else "online" if value in online else "offline")
-    assert set(taxonomy.values("calibration")) == {"offline", "online", "None"}
-
-
-def test_a_value_twice_is_refused() -> None:
-    entry = TaxonomyEntry("mask", "Slit", "Slit", "Mask", "")
-    with pytest.raises(ValueError, match="mask 'Slit' twice"):
-        Taxonomy([entry, entry])

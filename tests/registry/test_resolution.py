@@ -23,7 +23,6 @@ from stand_ins import (
     study_of,
 )
 
-from registry.fitting import KIN, SIMPLEST
 from registry.resolution import Resolution, resolve
 from registry.studies import Facts
 
@@ -266,47 +265,3 @@ def test_nothing_of_a_study_is_passed_over_in_silence(
             if value != "None":
                 kinds = {value, "ECM/Noise", "ECM/Angular loss"} if value == "ECM" else {value}
                 assert ((attribute, value) in explained) == kinds.isdisjoint(ran)
-
-
-def test_an_answer_is_plain_data(facts_of: Build) -> None:
-    answer = resolved(facts_of, study_of(model=["None", "LSQ"])).to_dict()
-    departures = answer.pop("departures")
-    assert [(d["part"], d["value"]) for d in departures] == [("model", "None"), ("model", "LSQ")]
-    assert all(d["text"] in answer["sentence"] and d["settled_by"] for d in departures)
-    assert [d["unknown"] for d in departures] == [True, False]  # none stated; not implemented
-    assert answer == {
-        "key": "S0",
-        "grade": "close",
-        "sentence": answer["sentence"],
-        "purposes": {},
-        "state": "partial",
-        "pipelines": [
-            {
-                "detector": "CMOS",
-                "mask": "Slit",
-                "extractor": "bctm",
-                "model": "spm",
-                "extractor_taxonomy": "BCTM",
-                "model_taxonomy": "SPM",
-                "stages": ["SPM"],
-                "basis": {
-                    "detector": "stated",
-                    "mask": "stated",
-                    "extractor": "stated",
-                    "model": "defaulted",
-                },
-                "assumed": answer["pipelines"][0]["assumed"],
-                "datasets": ["CMOS-Slit"],
-                "settings": [{"dataset": "CMOS-Slit", "condition": "nominal", "purposes": []}],
-            }
-        ],
-        "gaps": [{"attribute": "model", "value": "LSQ", "reason": "no model implements LSQ"}],
-    }
-
-
-def test_simplest_parts_and_kin_speak_the_taxonomys_language(survey: Facts) -> None:
-    for attribute, values in SIMPLEST.items():
-        assert set(values) <= set(survey.taxonomy.values(attribute))
-    categories = {survey.taxonomy.category("model", v) for v in survey.taxonomy.values("model")}
-    assert set(KIN) <= categories
-    assert {v for values in KIN.values() for v in values} <= set(survey.taxonomy.values("model"))
