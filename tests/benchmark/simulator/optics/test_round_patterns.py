@@ -15,7 +15,6 @@ from benchmark.simulator.kernels import diffraction
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.masks.errors import MaskErrors
-from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction import (
     SUNLIT_SILICON,
     Spectrum,
@@ -314,22 +313,6 @@ def test_far_patterns_are_seen_where_light_has_turned(
         assert found == pytest.approx(turned, rel=2e-3)
 
 
-def test_spots_move_with_the_mask_and_the_assembly() -> None:
-    sun = from_angles(np.array([5.0]), np.array([-8.0]))
-    base = sensor_of(0.05)
-    alone = base.lit(one_scene(sun), base.fixed_pattern("test"))[0]
-    assembly = Assembly(offset_x_mm=0.03, offset_y_mm=-0.02)
-    shifted = replace(base, camera=replace(base.camera, assembly=assembly))
-    moved = shifted.lit(one_scene(sun), shifted.fixed_pattern("test"))[0]
-    assert moved[:62, 3:] == pytest.approx(alone[2:, :61], abs=1e-12)
-
-
-def test_a_sun_behind_lights_nothing() -> None:
-    sensor = sensor_of(0.05)
-    sun = np.array([[0.3, 0.1, -0.9]]) / math.sqrt(0.91)
-    assert sensor.lit(one_scene(sun), sensor.fixed_pattern("test")).max() == 0.0
-
-
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
@@ -349,16 +332,3 @@ def test_rectangles_are_refused_unless_they_cast_shadows() -> None:
     with pytest.raises(ValueError, match="of round holes"):
         replace(base, camera=camera)
     assert replace(base, camera=camera, spectrum=None).spectrum is None
-
-
-@pytest.mark.parametrize(
-    ("fields", "said"),
-    [
-        ({"thickness_mm": -1.0}, "-1.0.*0.0"),
-        ({"cell_mm": -0.1}, "0.0.*-0.1"),
-        ({"growth": -1.0}, "growth.*-1.*-1.0"),
-    ],
-)
-def test_impossible_patterns_are_refused(fields, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        pattern_of(**fields)

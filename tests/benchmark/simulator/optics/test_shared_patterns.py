@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.simulator.light.memory import LightMemory
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.masks.errors import MaskErrors
@@ -73,19 +72,6 @@ def test_tables_of_the_drawn_height_serve_the_built_one(error_mm: float) -> None
     assert middles[0] == pytest.approx(middles[1], abs=1e-3)
 
 
-def test_holes_built_as_drawn_need_no_tables_of_others() -> None:
-    """And see the same light to the last bit."""
-    sensor = replace(sensor_of(0.8, holes=2, hole_mm=0.04), errors=MaskErrors())
-    pattern, scene = sensor.fixed_pattern("test"), seen(12.0, -20.0)
-    (group,) = sensor._spots.groups
-    shares = group.shares(np.full(2, 0.02))
-    assert np.array_equal(shares, [[0.0, 1.0, 0.0]] * 2)
-    assert {id(table) for table in group.tables(shares)} == {id(group.drawn.tables())}
-    alone = sensor.lit(scene, pattern)
-    vars(group)["tables"] = lambda _: tuple(size.tables() for size in group.sizes)
-    assert np.array_equal(sensor.lit(scene, pattern), alone)
-
-
 def test_holes_further_off_than_the_masks_errors_are_refused() -> None:
     sensor = replace(sensor_of(0.8, holes=2, hole_mm=0.04), errors=MaskErrors(size_mm=0.002))
     pattern = dict(sensor.fixed_pattern("test"))
@@ -124,21 +110,3 @@ def test_light_spread_over_the_sun_is_the_sum_of_its_shifts() -> None:
     parts = zip(shifts, weights, strict=True)
     expected = sum(weight * light(x - dx, y - dy) for (dx, dy), weight in parts)
     assert found == pytest.approx(expected, abs=1e-9)
-
-
-def test_tables_are_let_go_of_with_their_data_set() -> None:
-    memory, made = LightMemory(), []
-
-    @memory.tables(4)
-    def table(size: int) -> int:
-        made.append(size)
-        return size
-
-    memory.cache_for(("one", 0), "one")
-    assert (table(3), table(3)) == (3, 3)
-    memory.cache_for(("one", 1), "one")  # another unit looks up the same ones
-    assert table(3) == 3
-    assert made == [3]
-    memory.cache_for(("other", 0), "other")
-    assert table(3) == 3
-    assert made == [3, 3]

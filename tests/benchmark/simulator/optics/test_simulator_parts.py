@@ -14,9 +14,8 @@ from benchmark.seeds import generator, seed_sequence
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles, tangent_axes
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.plates import CoverGlass, Plate, fresnel_number
+from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.readout.detectors import (
-    DarkCurrent,
     Quadrants,
     cosine_response,
     kelly_response,
@@ -74,36 +73,9 @@ def test_points_of_the_disc_are_unit_vectors_within_its_radius() -> None:
     assert SolarDisc(diameter_deg=0.0).directions(sun)[:, 0] == pytest.approx(sun, abs=0)
 
 
-@given(st.floats(0, 75), st.floats(0.01, 0.5), st.floats(1.0, 2.0), st.floats(1.0, 2.0))
-@settings(deadline=None, derandomize=True)
-def test_refraction_shift_is_snells(theta: float, t: float, n1: float, n2: float) -> None:
-    glass = CoverGlass((Plate(t, n1), Plate(0.3, n2)))
-    inside = [math.asin(math.sin(math.radians(theta)) / n) for n in (n1, n2)]
-    expected = (1.2 - t - 0.3) * math.tan(math.radians(theta))
-    expected += t * math.tan(inside[0]) + 0.3 * math.tan(inside[1])
-    assert glass.displacement(off_axis(theta), 1.2)[0] == pytest.approx([expected, 0], abs=1e-12)
-
-
-def test_glass_transmits_as_fresnel_says() -> None:
-    glass = CoverGlass((Plate(0.5, 1.5),))
-    assert glass.transmission(off_axis(0.0))[0] == pytest.approx((1 - 0.04) ** 2)
-    # at Brewster's angle one polarisation passes whole, the other loses cos^2(2 theta_B) twice
-    brewster = math.degrees(math.atan(1.5))
-    lost = math.cos(2 * math.radians(brewster)) ** 2
-    assert glass.transmission(off_axis(brewster))[0] == pytest.approx((1 + (1 - lost) ** 2) / 2)
-    assert CoverGlass().transmission(off_axis(80.0))[0] == 1.0
-    grazing = [float(glass.transmission(off_axis(a))[0]) for a in (60, 75, 85, 89.9)]
-    assert grazing == sorted(grazing, reverse=True)
-    assert grazing[-1] < 0.02
-
-
 def test_glass_thicker_than_the_gap_is_refused() -> None:
     with pytest.raises(ValueError, match=r"mask\b.*\b1\.2 mm"):
         CoverGlass((Plate(1.5, 1.5),)).displacement(off_axis(0), 1.2)
-
-
-def test_fresnel_number() -> None:
-    assert fresnel_number(0.1, 1.2) == pytest.approx(0.1**2 / (550e-6 * 1.2))
 
 
 def test_assembly_turns_like_scipys_rotations() -> None:
@@ -122,11 +94,6 @@ def test_angular_responses_are_the_printed_ones() -> None:
     printed = -0.369 * c**3 + 0.637 * c**2 + 0.750 * c - 0.015
     assert kelly_response(c) == pytest.approx(np.where(c > 0, np.maximum(printed, 0), 0))
     assert kelly_response(np.array([1.0]))[0] == pytest.approx(1.003)
-
-
-def test_dark_current_doubles() -> None:
-    assert DarkCurrent(10.0, 7.0, 25.0).level() == 10.0
-    assert DarkCurrent(10.0, 7.0, 32.0).level() == pytest.approx(20.0)
 
 
 def test_quadrants_lie_where_the_voltage_balance_expects_them() -> None:
@@ -150,11 +117,6 @@ def test_small_counts_are_poisson() -> None:
     assert np.abs(electrons - np.rint(electrons)).max() < 1e-6
     expected = stats.poisson.pmf(np.arange(12), 3.0) * 100_000
     assert np.sum((seen - expected) ** 2 / expected) < stats.chi2.ppf(0.999, 11)
-
-
-def test_read_noise_adds_its_variance() -> None:
-    electrons = draw_counts(np.full(200_000, 100.0), 30.0, NoiseStreams.named("test", "read"))
-    assert electrons.var() == pytest.approx(100 + 900, rel=0.02)
 
 
 def test_streams_are_told_apart_by_every_name_and_its_place() -> None:

@@ -33,11 +33,6 @@ def test_a_pixel_gives_a_quarter_of_its_share_to_each_neighbour() -> None:
     )
 
 
-def test_a_line_s_pixel_has_two_neighbours() -> None:
-    seen = PixelErrors(crosstalk=0.1).gather(np.array([[0.0, 1.0, 0.0, 0.0]]))
-    assert seen == pytest.approx(np.array([[0.05, 0.9, 0.05, 0.0]]))
-
-
 def test_crosstalk_leaves_the_centroid_and_widens_the_spot_by_its_variance() -> None:
     """A step of one pixel with the chance c / 2 an axis: a variance of c / 2 px^2 more."""
     y, x = np.mgrid[:41, :41]
@@ -63,14 +58,6 @@ def test_smear_adds_the_column_s_light_to_every_pixel_of_it() -> None:
     assert PixelErrors(smear=1e-3).gather(line) is line
 
 
-def test_without_errors_nothing_changes() -> None:
-    light, none = frames(), PixelErrors()
-    assert none.gather(light) is light
-    assert none.read(light, FULL_E) is light
-    assert np.all(none.dark_factor((50, 60), "unit") == 1.0)
-    assert np.all(none.column_offsets(60, "unit") == 0.0)
-
-
 def test_hot_pixels_are_as_many_as_said_and_stay_hot_under_a_larger_dose() -> None:
     shape = (400, 500)
     little = PixelErrors(hot=0.01).dark_factor(shape, "unit")
@@ -82,12 +69,6 @@ def test_hot_pixels_are_as_many_as_said_and_stay_hot_under_a_larger_dose() -> No
     assert np.array_equal(much[hot], little[hot])
     excess = (much[much > 1.0] - 1.0) / 50.0
     assert stats.kstest(excess, "expon").pvalue > 1e-3
-
-
-def test_columns_differ_by_what_is_said() -> None:
-    offsets = PixelErrors(column_offset_e=12.0).column_offsets(4000, "unit")
-    assert offsets.std() == pytest.approx(12.0, rel=4 / math.sqrt(8000))
-    assert np.array_equal(offsets, PixelErrors(column_offset_e=12.0).column_offsets(4000, "unit"))
 
 
 @given(st.floats(0.0, 0.49), st.floats(0.0, 1.0))

@@ -12,7 +12,6 @@ from scipy import ndimage
 
 from benchmark import datasets
 from benchmark.datasets.conditions.full_frames import for_bound
-from benchmark.simulator.kernels.digitising import gather
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.readout.detectors import tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -147,13 +146,6 @@ def test_batches_do_not_change_the_noise_of_columns() -> None:
     assert np.array_equal(whole, np.concatenate(parts))
 
 
-def test_full_frames_gather_charge_as_windows_do() -> None:
-    light = np.random.default_rng(3).uniform(size=(9, 11))
-    out = np.empty_like(light)
-    gather(out, light, (0.2, 0.06, 1e-3))
-    assert out == pytest.approx(ALL.gather((light + 0.2)[None])[0], rel=1e-12)
-
-
 def test_full_frames_read_what_is_expected() -> None:
     """Mean of many frames: within 5 standard errors of each pixel's own noise, all but one."""
     errors = replace(ALL, column_noise_e=0.0)
@@ -240,20 +232,3 @@ def test_stray_light_adds_its_share_of_a_sunlit_pixel_to_every_pixel(name: str) 
     shares = (bright - dim) * detector.gain_e_per_dn / (0.02 * detector.sunlit_e)
     assert shares.min() > 0.8
     assert shares.mean() == pytest.approx(1.0, abs=0.01)  # gains scatter about one
-
-
-def test_impossible_tunnels_and_cameras_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"tunnel.*-1"):
-        sensor_of("ccd-slit", PixelErrors(), columns=10).detector.__class__(
-            **{**vars(sensor_of("ccd-slit", PixelErrors()).detector), "tunnel": -1.0}
-        )
-    camera: Any = datasets.get("ccd-lens").setups["nominal"].sensor.camera  # type: ignore[attr-defined]
-    bent = replace(camera.detector, errors=PixelErrors(nonlinearity=0.01))
-    with pytest.raises(ValueError, match="amplifiers without errors"):
-        replace(camera, detector=bent)
-
-
-def test_without_a_stream_there_is_no_noise_of_columns() -> None:
-    streams = NoiseStreams(np.random.default_rng(0), np.random.default_rng(1))
-    with pytest.raises(ValueError, match="columns is None"):
-        streams.column_noise(1.0, (3,))

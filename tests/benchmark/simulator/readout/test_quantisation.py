@@ -16,7 +16,6 @@ from scipy.stats import norm
 from benchmark import datasets
 from benchmark.seeds import generator
 from benchmark.simulator.readout.quantisation import (
-    charge_variance,
     pixel_variance,
     reading_variance,
 )
@@ -118,19 +117,6 @@ def test_the_slope_of_drawn_readings_likelihood_has_this_variance(
     assert squares.mean() == pytest.approx(1 / of(mean, sigma, ends), abs=4 * error)
 
 
-def test_shapes_broadcast_and_each_element_stands_alone() -> None:
-    means, sigmas = np.linspace(0, 20, 12).reshape(3, 4), np.array([0.1, 0.5, 1.0, 7.0])
-    found = reading_variance(means, sigmas, 0.0, 15.0)
-    assert found.shape == (3, 4)
-    for place in np.ndindex(3, 4):
-        assert found[place] == of(means[place], sigmas[place[1]], (0.0, 15.0))
-
-
-def test_ends_in_the_wrong_order_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"highest.*= 5.*5"):
-        reading_variance(np.ones(1), np.ones(1), 5, 5)
-
-
 def test_pixels_end_at_their_full_well_and_the_dark_ones_keep_their_read_noise() -> None:
     detector = datasets.get("cmos-slit").setups["nominal"].sensor.detector  # type: ignore[attr-defined]
     detector = replace(detector, full_well_e=500 * detector.gain_e_per_dn, offset_dn=20.0)
@@ -145,27 +131,3 @@ def test_pixels_end_at_their_full_well_and_the_dark_ones_keep_their_read_noise()
     for place in range(3):
         exact = information(mean[place], sigma[place], (0.0, 520.0))
         assert found[place] == pytest.approx(1 / exact if exact > 1e-9 else math.inf, rel=3e-4)
-
-
-def test_charges_are_read_in_codes_from_dark_to_the_converter_s_end() -> None:
-    """Their own variance stands for shot noise: beyond a fold it is not that of the reading."""
-    detector = datasets.get("cmos-slit").setups["nominal"].sensor.detector  # type: ignore[attr-defined]
-    detector = replace(detector, gain_e_per_dn=100.0, offset_dn=3.0, read_noise_e=20.0, bits=8)
-    charge, shot = np.array([0.0, 940.0, 24_000.0]), np.array([0.0, 5_000.0, 24_000.0])
-    found = charge_variance(detector, charge, shot)
-    assert shot.tolist() == [0.0, 5_000.0, 24_000.0], "what is handed in stays as it is"
-    for place in range(3):
-        sigma = math.sqrt(shot[place] + 400.0) / 100.0
-        exact = information(3.0 + charge[place] / 100.0, sigma, (0.0, 255.0)) / 100.0**2
-        assert found[place] == pytest.approx(1 / exact, rel=3e-4)
-
-
-def test_currents_are_read_in_codes_of_either_sign() -> None:
-    sensor = datasets.get("qpd-single-aperture").setups["nominal"].sensor
-    part = replace(sensor.readout, bits=6, noise_ua=0.0)  # type: ignore[attr-defined]
-    mean = np.array([0.37, 0.5, 0.8]) * part.full_scale_ua
-    sigma = np.sqrt(part.electron_ua * mean) / part.step_ua
-    found = replace(sensor, readout=part).variance(mean)
-    for value, mu, s in zip(found, mean / part.step_ua, sigma, strict=True):
-        exact = information(mu, s, (-32.0, 31.0)) / part.step_ua**2
-        assert value == pytest.approx(1 / exact, rel=3e-4) if exact > 1e-6 else value > 1e6

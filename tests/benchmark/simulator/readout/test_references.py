@@ -19,9 +19,7 @@ from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.readout.references import (
-    ElementSpread,
     References,
     pixel_references,
     pixel_spread,
@@ -67,20 +65,6 @@ def test_what_is_left_is_the_inverse_of_all_information(
     )
 
 
-def test_what_is_known_stays_known_and_what_is_not_asked_after_keeps_its_spread() -> None:
-    assert posterior((0.0, 0.0), 5.0, (3.0, 2.0)) == ElementSpread(0.0, 0.0, 0.0)
-    assert posterior((0.1, 0.2), 5.0, (0.0, 0.0)) == ElementSpread(0.1**2, 0.0, 0.2**2)
-
-
-def test_a_spread_s_variance_is_that_of_the_signal() -> None:
-    """Var(g L + w d) of Gaussian gains and dark signals."""
-    spread = ElementSpread(0.04, -0.05, 0.25)
-    covariance = np.array([[0.04, -0.05], [-0.05, 0.25]])
-    for light, warmth in ((3.0, 1.0), (0.0, 2.0), (7.0, 0.5)):
-        row = np.array([light, warmth])
-        assert spread.variance(np.array(light), warmth) == pytest.approx(row @ covariance @ row)
-
-
 @pytest.mark.parametrize("deviation", [0.8, 2.0, 50.0])
 def test_readings_of_much_noise_average_with_their_twelfth(deviation: float) -> None:
     assert readings_information(deviation, 16) == pytest.approx(
@@ -119,21 +103,6 @@ def test_the_pixels_estimated_by_flats_and_darks_are_wrong_by_what_is_left() -> 
     mean = np.array(PIXELS.offset_dn + dark_e / per_dn + signal)
     left = pixel_unit_variance(PIXELS, mean, references)
     assert wrong.std() == pytest.approx(math.sqrt(float(left)), rel=0.1)
-
-
-def test_without_readings_the_spread_of_the_design_is_left() -> None:
-    mean = np.array([PIXELS.offset_dn + 1_000 / 30 + light for light in (0.0, 600.0)])
-    found = pixel_unit_variance(PIXELS, mean, References(flats=0, darks=0))
-    of_dark = (0.3 * 1_000 / 30) ** 2
-    assert found == pytest.approx([of_dark, of_dark + (0.02 * 600.0) ** 2])
-
-
-def test_readings_that_there_are_none_of_are_left_out() -> None:
-    few = replace(PIXELS, columns=3, rows=2)
-    streams = NoiseStreams.named("test")
-    found = pixel_references(few, unit(few), References(flats=0), streams)
-    assert {name: array.shape for name, array in found.items()} == {"dark_dn": (2, 3)}
-    assert pixel_references(few, unit(few), References(0, 0), streams) == {}
 
 
 @pytest.mark.parametrize(
@@ -183,65 +152,6 @@ def test_another_unit_has_other_references_and_a_sensor_without_elements_none() 
     assert datasets.get("event-single-aperture").references("nominal") == {}
     with pytest.raises(ValueError, match="no condition 'nowhere'"):
         preset.references("nowhere")
-
-
-def test_drifts_of_gains_are_not_in_flats_taken_before_the_flight() -> None:
-    """Ten kelvin and a year add the squares of what each spreads to the gain's own."""
-    preset = datasets.get("pd-orbit")
-    sensor = preset.setups[preset.conditions[0]].sensor
-    scene = preset.scene(preset.conditions[0], "test").part(0, 2)
-    warm = replace(
-        scene,
-        temperature_k=np.array([298.15, 308.15]),  # type: ignore[call-arg]
-        age_years=np.array([0.0, 1.0]),
-    )
-    lots = References(flats=10**9)
-    dark = np.array([[sensor.readout.dark.at_25_c]])  # type: ignore[attr-defined]
-    light = 40.0 * np.ones((2, len(sensor.normals)))  # type: ignore[attr-defined]
-    warmth = np.array([[1.0], [2.0 ** (10.0 / sensor.readout.dark.doubling_k)]])  # type: ignore[attr-defined]
-    found = sensor.unit_variance(light + dark * warmth, warm, lots)  # type: ignore[attr-defined]
-    drift = sensor.drift  # type: ignore[attr-defined]
-    expected = 40.0**2 * ((10 * drift.gain_per_k_spread) ** 2 + drift.loss_per_year_spread**2)
-    assert found[1] == pytest.approx(expected, rel=1e-3)
-    assert (found[0] < 1e-3 * found[1]).all()
-
-
-def test_dark_signals_of_a_warm_camera_are_as_uncertain_as_they_have_grown() -> None:
-    preset = datasets.get("ccd-orbit")
-    sensor: Any = preset.setups[preset.conditions[0]].sensor
-    sensor = replace(sensor, detector=replace(sensor.detector, errors=PixelErrors()))
-    scene = preset.scene(preset.conditions[0], "test").part(0, 1)
-    detector = sensor.detector
-    warmer = 298.15 + 2 * detector.dark.doubling_k
-    warm = replace(scene, temperature_k=np.array([warmer]))  # type: ignore[call-arg]
-    at_25 = detector.dark.at_25_c * detector.exposure_s / detector.gain_e_per_dn
-    mean = np.full((1, 2, 2), detector.offset_dn + 4 * at_25)
-    found = sensor.unit_variance(mean, warm, References(0, 0))
-    assert found == pytest.approx(np.full((1, 2, 2), (4 * at_25 * detector.dsnu) ** 2))
-
-
-def test_the_number_of_flats_and_darks_is_on_the_card() -> None:
-    card = datasets.get("ccd-slit").card()
-    assert card["parameters"]["offered"] == {
-        "type": "References", "flats": 16, "darks": 16, "level": 0.5,
-    }  # fmt: skip
-    assert card["seeds"]["references"] == [
-        "ccd-slit",
-        card["parameters"]["dataset_version"],
-        "<condition>",
-        "references",
-    ]
-
-
-def test_one_direction_s_light_is_not_needed_to_know_what_a_flat_tells() -> None:
-    """The second bound takes the signals of the first: the sensor is not asked again."""
-    setup = datasets.get("pd-maskless-cube").setups["nominal"]
-    sun = from_angles(np.array([20.0]), np.array([10.0]))
-    scene = Scene(sun, np.ones(1), np.full(1, setup.irradiance.stray))
-    mean = setup.sensor.expected(scene, setup.sensor.fixed_pattern("test"))
-    found = setup.sensor.unit_variance(mean, scene, References())  # type: ignore[attr-defined]
-    assert found.shape == mean.shape
-    assert (found >= 0).all()
 
 
 def test_lit_pixels_know_as_little_of_a_unit_as_the_whole_frame() -> None:

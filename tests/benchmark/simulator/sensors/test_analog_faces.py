@@ -15,15 +15,13 @@ from scipy.optimize import brentq
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from benchmark import datasets
 from benchmark.datasets.conditions.cone import ConeField
-from benchmark.plan import combinations as plan
-from benchmark.plan.parts import installed_parts
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout.detectors import CurrentReadout, DarkCurrent
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.face_layouts import lattice, pyramid, sphere
+from benchmark.simulator.sensors.face_layouts import pyramid, sphere
 from benchmark.simulator.sensors.faces import CUBE, Faces
 from benchmark.simulator.sensors.light_to_frequency import FrequencySensor
 from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor, collect
@@ -86,17 +84,6 @@ def test_a_cap_holds_all_its_directions_and_none_beyond() -> None:
         assert len(z) == field.card()[split]["samples"]
 
 
-def test_impossible_layouts_are_refused() -> None:
-    with pytest.raises(ValueError, match="at least 3 faces; got 2"):
-        pyramid(2, 30.0)
-    with pytest.raises(ValueError, match=r"tilt_deg.*\(0.*90\).*90"):
-        pyramid(4, 90.0)
-    with pytest.raises(ValueError, match=r"count.*1.*0"):
-        sphere(0)
-    with pytest.raises(ValueError, match=r"lowest_cosine.*\[-1.*1\).*1"):
-        lattice(5, 1.0)
-
-
 def perfect(name: str) -> Any:
     """The dataset's sensor as drawn: cosine faces, no errors, a point Sun; cells stay warm."""
     sensor = datasets.get(name).setups["nominal"].sensor
@@ -149,16 +136,6 @@ def test_least_squares_over_the_lit_faces_invert_the_perfect_sensor(
         return
     found = np.linalg.lstsq(normals[lit], light[lit])[0]
     assert apart_deg(found[None], sun) < 1e-6
-
-
-@pytest.mark.parametrize("name", BARE)
-def test_three_faces_that_span_space_are_lit_nearly_everywhere(name: str) -> None:
-    """So that the property above is seldom empty: dark pairs occur in face planes only."""
-    sun = datasets.get(name).generate("nominal", "test").sun
-    light = perfect(name).lit(lit_by(sun), {"normals": np.array(perfect(name).normals)})
-    normals = np.array(perfect(name).normals)
-    spanned = [np.linalg.matrix_rank(normals[row > 1e-12]) == 3 for row in light]
-    assert np.mean(spanned) == 1.0
 
 
 @given(alpha=st.floats(-38.0, 38.0), beta=st.floats(-38.0, 38.0))
@@ -230,18 +207,6 @@ def test_current_changes_with_temperature_by_the_coefficient() -> None:
     assert seen[[0, 4]] == pytest.approx([60 * (1 + 0.0006 * 24), 80 * (1 + 0.0006 * 32)])
 
 
-def test_ageing_takes_its_share_from_every_cell() -> None:
-    sensor = SolarCellSensor(sphere(3000), IDEAL, SolarCells(loss=0.2, loss_spread=0.05))
-    kept = sensor.fixed_pattern("test")["cells"]
-    assert kept.mean() == pytest.approx(0.8, abs=0.004)
-    assert kept.std() == pytest.approx(0.05, rel=0.05)
-    preset = datasets.get("pva-maskless-panels")
-    new, old = (preset.fixed_pattern(c) for c in ("nominal", "aged"))
-    assert np.array_equal(new["gain"], old["gain"])  # the same unit, years later
-    assert (old["cells"] / new["cells"] > 0.6).all()
-    assert (old["cells"] / new["cells"] < 1.0).all()
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -303,41 +268,3 @@ def test_earthlight_reaches_each_face_by_its_own_normal(name: str) -> None:
     facing = pattern["normals"] @ nadir[0]
     brightest = pattern["normals"][light.argmax()] @ nadir[0]
     assert brightest > np.sort(facing)[-3:].min() - 1e-12
-
-
-def test_models_of_other_layouts_are_left_out_with_the_reason() -> None:
-    for name in BARE:
-        faces = len(datasets.get(name).geometry.face_normals or ())
-        cube = datasets.get(name).geometry.face_normals == CUBE
-        planned = {(c.extractor, c.model) for c in plan.cells(name)}
-        reasons = {(r.extractor, r.model): r.reason for r in plan.list_exclusions(name)}
-        assert (("direct", "basic") in planned) == cube
-        if not cube:
-            assert "needs six face normals" in reasons["direct", "basic"]
-        if faces == 4:
-            assert ("voltage-balance", "polynomial-2d") in planned
-        else:
-            assert f"the sensor has {faces} faces" in reasons["voltage-balance", ""]
-
-
-#: Currents behind a mask, a position, few faces without one, and many.
-FEW = ("pd-slit", "psd-single-aperture", "qpd-maskless-pyramid", "pva-maskless-sphere")
-
-
-@pytest.mark.parametrize(
-    "name", [n if n in FEW else pytest.param(n, marks=pytest.mark.slow) for n in ANALOG]
-)
-def test_no_planned_pair_fails_on_the_analog_datasets(name: str) -> None:
-    preset = datasets.get(name)
-    samples = preset.generate("nominal", "calibration")
-    for cell in plan.cells(name, "nominal"):
-        extractor = installed_parts().extractor(cell.extractor)
-        model = (
-            installed_parts().model(cell.model).for_sensor(preset.geometry, extractor.about.kind)
-        )
-        features = extractor.for_sensor(preset.geometry).extract(samples.observations)
-        found = model.fit(features, samples.sun).predict(features)
-        # within a degree of a cube's axes, faces at grazing incidence say nothing of a direction;
-        # a pyramid free of constant light answers where the Sun is as bright as it learnt
-        least = 0.2 if cell.model == "pyramidal-constant" else 0.93
-        assert np.isfinite(found).all(axis=1).mean() > least, cell

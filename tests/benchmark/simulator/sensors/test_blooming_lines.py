@@ -69,20 +69,6 @@ def test_the_saturated_profile_has_the_charge_of_its_light() -> None:
     assert ((picture > 0.99 * FULL).sum(axis=1) > (cut > 0.99 * FULL).sum(axis=1) + 8).all()
 
 
-@pytest.mark.parametrize("split", ["calibration", "test"])
-def test_trails_stay_on_the_array_all_over_the_field(split: str) -> None:
-    scene = PRESET.scene("saturated", split)
-    keep = np.argsort(np.abs(scene.sun[:, :2] / scene.sun[:, 2:]).max(axis=1))[-40:]
-    part = Scene(scene.sun[keep], scene.irradiance[keep], scene.stray[keep])
-    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
-    charge = sensor._electrons(part, pattern)
-    _, drained = sensor.held(charge)
-    assert not drained.any()
-    # 60 deg off, a slit in a foil lets too little through to fill a well of that array
-    most = charge.reshape(-1, 2, 1024).max(axis=2)
-    assert (most.max(axis=1) > FULL).mean() > 0.5
-
-
 def test_statistics_of_the_bound_have_the_variance_they_state() -> None:
     sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
     scene = scene_over((14.0, -33.0))
@@ -113,15 +99,6 @@ def test_profiles_do_not_depend_on_the_batch() -> None:
         seen.append(np.concatenate(parts))
     assert np.array_equal(*seen)
     assert seen[0].max() <= 4095
-
-
-def test_without_overflow_the_statistics_are_those_of_other_lines() -> None:
-    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
-    dim = replace(sensor, detector=PRESET.setups["nominal"].sensor.detector)
-    scene = scene_over((3.0, -8.0))
-    plain = PRESET.setups["nominal"].sensor.expected(scene, pattern)
-    assert dim.picture(scene, pattern) == pytest.approx(plain, rel=1e-12)
-    assert not dim.expected(scene, pattern)[:, -2:].any()
 
 
 def test_a_converter_below_the_full_well_is_refused() -> None:

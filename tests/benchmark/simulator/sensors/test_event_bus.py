@@ -52,11 +52,6 @@ def test_each_event_leaves_when_it_and_the_one_before_it_allow(
         assert departure == pytest.approx(left, abs=60 * 2e4 * 2.3e-16)
 
 
-def test_a_bus_that_takes_no_time_changes_no_bit() -> None:
-    requests = np.sort(generator("test", "bus").random((5, 200)) * 1e3, axis=1)
-    assert departures(requests, 0.0).tobytes() == requests.tobytes()
-
-
 def test_the_mean_wait_is_that_of_a_queue_with_random_requests_and_one_service_time() -> None:
     """Pollaczek and Khinchine: ``rho s / (2 (1 - rho))`` for Poisson requests (M/D/1)."""
     service, load, runs, count = 0.5, 0.6, 200, 20_000

@@ -171,20 +171,6 @@ def test_jitter_has_the_stated_spread_and_the_mean_its_time() -> None:
     assert np.std(pull) == pytest.approx(1.0, abs=0.06)
 
 
-def test_mismatch_belongs_to_the_unit_not_to_the_sample() -> None:
-    preset = datasets.get("event-l-slit")
-    one, again = (preset.fixed_pattern("nominal") for _ in range(2))
-    assert np.array_equal(one["threshold"], again["threshold"])
-    assert one["threshold"].std() == pytest.approx(0.02, rel=0.05)
-    worse = preset.fixed_pattern("mismatched")["threshold"]
-    assert worse - 1 == pytest.approx(5 * (one["threshold"] - 1), rel=1e-9)
-    sensor = sensor_of("event-l-slit")
-    scene = scene_of([(0.0, 0.0)])
-    flat = {**one, "threshold": np.ones((64, 64))}
-    ratio = sensor.expected(scene, one) / sensor.expected(scene, flat)
-    assert ratio[0] == pytest.approx(one["threshold"].ravel(), rel=1e-12)
-
-
 def test_a_silent_pixel_is_worth_what_a_censored_gaussian_is() -> None:
     """Variance of the score of a normal mean known only below z, by numerical integration."""
     z = np.array([-5.0, -2.0, -0.5, 0.0, 0.7, 2.5, 5.0])

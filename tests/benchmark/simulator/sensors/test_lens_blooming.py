@@ -48,13 +48,6 @@ def test_charge_is_conserved_and_no_pixel_holds_more_than_its_well(charge: np.nd
     assert out == pytest.approx(drained, abs=1e-9)
 
 
-def test_frames_without_overflow_are_left_as_they_are() -> None:
-    charge = np.random.default_rng(0).uniform(0, 10, (2, 20, 5))
-    held, drained = spill(charge, 10.0)
-    assert np.array_equal(held, charge)
-    assert not drained.any()
-
-
 def test_half_of_the_overflow_goes_either_way() -> None:
     charge = np.zeros((1, 11, 3))
     charge[0, 5, 1] = 10 + 2 * 25
@@ -63,14 +56,6 @@ def test_half_of_the_overflow_goes_either_way() -> None:
     assert held[0, :, 1].tolist() == [0, 0, 5, 10, 10, 10, 10, 10, 9, 0, 0]
     assert not held[0, :, [0, 2]].any()
     assert not drained.any()
-
-
-def test_what_reaches_the_end_of_a_column_leaves_it() -> None:
-    charge = np.zeros((1, 6, 1))
-    charge[0, 1, 0] = 10 + 2 * 30
-    held, drained = spill(charge, 10.0)
-    assert held[0, :, 0].tolist() == [10, 10, 10, 10, 10, 0]
-    assert drained.tolist() == [[20.0]]
 
 
 def test_competing_overflows_are_shared_evenly() -> None:

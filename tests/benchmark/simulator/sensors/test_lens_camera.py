@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from scipy.special import ndtr
 
 from benchmark import datasets
-from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
+from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.flare import Aureole, Clouds, Flare, Ghost, Streak
+from benchmark.simulator.optics.flare import Aureole, Flare, Ghost, Streak
 from benchmark.simulator.optics.lens import Lens
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.scene import Scene
@@ -214,50 +214,3 @@ def test_the_lens_gathers_the_light_of_its_pupil(name: str) -> None:
     bare = camera.detector.sunlit_e / camera.detector.pitch_mm**2  # electrons a square millimetre
     expected = bare * area * np.array([1.0, 1.1 * math.cos(math.radians(21.0))])
     assert electrons == pytest.approx(expected, rel=1e-9)
-
-
-def test_stray_light_is_what_a_pixel_would_see_without_the_lens() -> None:
-    camera = clean("ccd-lens")
-    pattern = camera.fixed_pattern("unit")
-    dark = Scene(from_angles(np.zeros(1), np.zeros(1)), np.zeros(1), np.full(1, 0.1))
-    electrons = camera.photo_electrons(dark, pattern)[0]
-    assert electrons == pytest.approx(0.1 * camera.detector.sunlit_e * pattern["gain"], rel=1e-12)
-
-
-def test_units_with_more_dead_pixels_keep_the_old_ones() -> None:
-    few, many = (camera_of("ccd-lens", c) for c in ("nominal", "dead-pixels"))
-    names = ("ccd-lens", 1, "unit")
-    one, other = few.fixed_pattern(*names), many.fixed_pattern(*names)
-    assert np.array_equal(one["gain"], other["gain"])
-    assert (other["alive"] <= one["alive"]).all()
-    assert 1 - other["alive"].mean() == pytest.approx(0.01, rel=0.15)
-    assert 1 <= (one["alive"] == 0).sum() <= 30
-
-
-def test_clouds_differ_from_picture_to_picture_by_one_draw_each() -> None:
-    clouds = Clouds(3, 0.05, (0.01, 0.05), (0.5, 1.0))
-    generator = np.random.default_rng(1)
-    pictures = [clouds.light((50, 60), np.array([30.0, 25.0]), 0.003, generator) for _ in range(3)]
-    assert not np.array_equal(pictures[0], pictures[1])
-    again = np.random.default_rng(1)
-    again.standard_normal(6)
-    again.random(6)
-    second = clouds.light((50, 60), np.array([30.0, 25.0]), 0.003, again)
-    assert np.array_equal(second, pictures[1])
-    alone = Clouds(1, 0.0, (0.03, 0.03), (0.7, 0.7)).light(
-        (51, 61), np.array([30, 25]), 0.003, again
-    )
-    assert alone[25, 30] == pytest.approx(0.7)
-    assert alone[25, 40] == pytest.approx(0.7 / 4)  # at one radius
-
-
-def test_a_point_sun_and_impossible_lenses() -> None:
-    point = replace(clean("cmos-lens"), sun=SolarDisc(0.0), blur_mm=1e-5)
-    sun = point.sun_of(np.array([[100.0, 30.0]]))
-    assert point.shares(sun)[0, 30, 100] == pytest.approx(1.0, abs=1e-12)
-    with pytest.raises(ValueError, match="focal_length_mm and pupil_mm must be positive"):
-        Lens(0.0, 1.0)
-    with pytest.raises(ValueError, match="blur_mm must be positive"):
-        replace(point, blur_mm=0.0)
-    with pytest.raises(ValueError, match=r"dead_share must be in \[0, 1\)"):
-        replace(point, dead_share=1.0)
