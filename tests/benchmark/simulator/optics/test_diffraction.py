@@ -16,8 +16,7 @@ from benchmark.simulator.optics.diffraction import (
     Spectrum,
     round_intensity,
 )
-from benchmark.simulator.optics.diffraction_tables import fresnel_table, landing_points, layers
-from benchmark.simulator.optics.plates import CoverGlass, Plate
+from benchmark.simulator.optics.diffraction_tables import fresnel_table
 
 
 @pytest.mark.parametrize("number", [0.02, 0.7, 3.0, 9.0])
@@ -30,13 +29,6 @@ def test_slit_is_the_integral_of_the_fresnel_phase(number: float, position: floa
     expected = number * (part(math.cos) ** 2 + part(math.sin) ** 2)
     found = slit_intensity(np.array([position, -position]), number)
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
-
-
-def test_slit_of_the_frames_is_the_closed_form() -> None:
-    position = np.linspace(-8.0, 8.0, 4001)
-    for number in (0.003, 0.5, 9.0, 80.0):
-        out = [slit_integrals._slit(x, number, 0.0, fresnel_table()) for x in position]
-        assert out == pytest.approx(slit_intensity(position, number), abs=2e-8), number
 
 
 def test_straight_edge_of_a_wide_slit_has_a_quarter_of_the_light() -> None:
@@ -114,24 +106,6 @@ def test_weights_are_sunlight_on_silicon() -> None:
     photons = micrometres**-4.0 / np.expm1(14387.769 / (micrometres * 5772.0))
     expected = efficiency * photons / np.sum(efficiency * photons)
     assert SUNLIT_SILICON.weights == pytest.approx(expected, abs=5.1e-4)
-
-
-def test_landing_point_moves_by_its_derivatives() -> None:
-    glass = CoverGlass((Plate(0.5, 1.52), Plate(0.2, 1.9)))
-    stack = layers(3.0, glass)
-    sine, step = np.array([0.0, 0.3, 0.7]), 1e-6
-    found = landing_points(sine, stack)
-    direction = np.stack([sine, np.zeros(3), np.sqrt(1.0 - sine**2)], axis=1)
-    assert found[:, 0] == pytest.approx(glass.displacement(direction, 3.0)[:, 0], abs=1e-14)
-    slope = (
-        landing_points(sine + step, stack)[:, 0] - landing_points(sine - step, stack)[:, 0]
-    ) / (2.0 * step)
-    assert found[:, 1] == pytest.approx(slope, rel=1e-8)
-    assert found[:, 2] * sine == pytest.approx(found[:, 0], abs=1e-14)
-    cosine = np.sqrt(1.0 - sine**2)
-    empty = landing_points(sine, layers(3.0, CoverGlass()))
-    assert empty[:, 1] == pytest.approx(3.0 / cosine**3)
-    assert empty[:, 2] == pytest.approx(3.0 / cosine)
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,6 @@ from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction import Spectrum
-from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -237,43 +236,6 @@ def test_light_of_the_pinhole_is_conserved() -> None:
     entered = math.pi * 0.01**2 * scene.sun[:, 2] / detector.pitch_mm**2
     missing = 2.0 / (math.pi * 2.0 * math.pi / GREEN_MM * 0.01 * (200 * 0.024 / 7.0))
     assert frames.sum(axis=(1, 2)) / entered == pytest.approx(1.0 - missing, abs=missing)
-
-
-def test_apertures_glass_and_offsets_move_the_pattern_as_a_whole() -> None:
-    glass = CoverGlass((Plate(0.5, 1.52), Plate(0.3, 1.7)))
-    sensor = pinhole()
-    sensor = replace(sensor, camera=replace(sensor.camera, glass=glass))
-    scene = scene_at(sensor, [12.0], [-25.0])
-    alone = sensor.lit(scene)[0]
-    pitch = sensor.detector.pitch_mm
-    for aperture, assembly in (
-        (Aperture("round", 0.02, 0.02, x_mm=3 * pitch, y_mm=-2 * pitch), Assembly()),
-        (
-            Aperture("round", 0.02, 0.02),
-            Assembly(offset_x_mm=3 * pitch, offset_y_mm=-2 * pitch),
-        ),
-    ):
-        camera = replace(sensor.camera, mask=Mask((aperture,)), assembly=assembly)
-        moved = replace(sensor, camera=camera).lit(scene)[0]
-        assert moved[:62, 3:] == pytest.approx(alone[2:, :61], abs=1e-9)
-    both = Mask((Aperture("round", 0.02, 0.02), Aperture("round", 0.02, 0.02, x_mm=3 * pitch)))
-    pair = replace(sensor, camera=replace(sensor.camera, mask=both)).lit(scene)[0]
-    assert pair[:, 3:] == pytest.approx(alone[:, 3:] + alone[:, :61], abs=1e-9)
-
-
-def test_glass_of_index_one_changes_nothing() -> None:
-    sensor = pinhole()
-    scene = scene_at(sensor, [12.0, 0.0], [-25.0, 3.0])
-    empty = replace(sensor, camera=replace(sensor.camera, glass=CoverGlass((Plate(2.0, 1.0),))))
-    assert empty.lit(scene) == pytest.approx(sensor.lit(scene), abs=1e-9)
-
-
-@pytest.mark.slow
-def test_a_sun_behind_the_sensor_gives_no_light() -> None:
-    sun = np.array([[0.1, 0.0, -math.sqrt(0.99)]])
-    scene = Scene(sun, np.ones(1), np.zeros(1), np.full((1, 2), 200))
-    assert pinhole().lit(scene).max() == 0.0
-    assert behind(2.0, "rectangle", 3).lit(scene).max() == 0.0
 
 
 def test_noiseless_pinhole_frames_give_the_direction_back() -> None:

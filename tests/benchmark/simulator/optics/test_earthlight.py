@@ -83,11 +83,6 @@ def test_an_earth_straight_ahead_and_lit_from_behind_moves_no_balance() -> None:
     assert [q2 + q3 - q1 - q4, q1 + q2 - q3 - q4] == pytest.approx([0.0, 0.0], abs=1e-5)
 
 
-def test_nothing_comes_from_an_earth_behind_or_in_the_dark() -> None:
-    assert not seen(quadrants(1.8), Earth(), BEHIND, AHEAD).any()
-    assert not seen(quadrants(1.8), Earth(), AHEAD, AHEAD).any()
-
-
 def test_quadrants_see_what_patches_of_the_earth_throw_on_them() -> None:
     """Another quadrature: patches fixed to the Earth instead of to the sky; areas by intervals."""
     earth, sensor = Earth(), quadrants(1.8, 0.05)
@@ -161,20 +156,6 @@ def test_thick_foil_takes_the_share_its_walls_shade() -> None:
     )
     tangent = np.array([0.0, 0.5, 1.0, 1.5])
     assert thick[0, 0] / thin[0, 0] == pytest.approx(1.0 - 0.02 * tangent / 0.1, abs=1e-5)
-
-
-def test_earth_is_in_view_on_the_test_split_alone_and_changes_nothing_else() -> None:
-    preset = datasets.get("psd-single-aperture")
-    with_it, without = preset.scene("albedo", "test"), preset.scene("nominal", "test")
-    assert with_it.albedo is not None
-    assert with_it.albedo.shape == (len(with_it), 4)
-    assert preset.scene("albedo", "calibration").albedo is None
-    for name in ("sun", "irradiance", "stray"):
-        assert np.array_equal(getattr(with_it, name), getattr(without, name)), name
-    sensor = preset.condition("albedo").sensor
-    pattern = {"gain": np.ones(4)}
-    added = sensor.expected(with_it, pattern) - sensor.expected(without, pattern)
-    assert added == pytest.approx(sensor.readout.sunlit_ua * with_it.albedo, abs=1e-9)
 
 
 def test_a_sensor_that_sees_no_earth_is_refused() -> None:

@@ -12,10 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmark import datasets
-from benchmark.datasets.conditions.other_light import with_ghosts
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
-from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
@@ -125,17 +123,6 @@ def test_a_cover_glass_repeats_what_falls_through_it() -> None:
     passed = sensor.camera.glass.transmission(sun)[0]
     expected = 0.02 * passed * sun[0, 2] * math.pi * 0.05**2 / pitch**2
     assert light == pytest.approx(expected, rel=1e-9)
-
-
-def test_the_condition_says_how_much() -> None:
-    base = datasets.get("qpd-single-aperture").setups["nominal"].sensor
-    setup = with_ghosts(base)
-    assert setup.sensor.ghost == Ghost(0.3, 0.1)
-    assert "3.0% of the light" in setup.description
-    upright = replace(base, camera=replace(base.camera, assembly=Assembly()))
-    assert replace(upright, ghost=Ghost(0.0)).lit(lit_by(toward(1.0, 2.0))) == pytest.approx(
-        upright.lit(lit_by(toward(1.0, 2.0)))
-    )
 
 
 def test_what_is_no_mirror_is_refused() -> None:

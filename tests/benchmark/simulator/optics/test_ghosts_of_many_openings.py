@@ -11,7 +11,7 @@ import pytest
 
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
-from benchmark.simulator.masks.apertures import Aperture, Mask
+from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.masks.slits import SlitErrors, crossed_pairs, periodic, slit_row
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.ghosts import Ghost
@@ -126,13 +126,6 @@ def test_a_cover_glass_repeats_slits_whole() -> None:
     passed = glass.transmission(sun)[0]
     total = ghost_alone(sensor, sun).sum() * sensor.detector.pitch_mm
     assert total == pytest.approx(0.02 * passed * 0.2, rel=1e-9)
-
-
-def test_ghosts_that_position_sensors_do_not_have_are_refused() -> None:
-    square = Mask((Aperture("rectangle", 0.5, 0.5),))
-    psd = nominal("psd-single-aperture")
-    with pytest.raises(ValueError, match=r"one round aperture; got \['rectangle'\]"):
-        replace(psd, camera=replace(psd.camera, mask=square), ghost=GHOST)
 
 
 @pytest.mark.parametrize("beta", [0.0, 2.0, -5.0])

@@ -154,16 +154,6 @@ def test_balances_of_a_quadrant_pyramid_are_linear_in_the_tangents(
     assert apart_deg(found / np.linalg.norm(found), sun) < 1e-6
 
 
-@pytest.mark.parametrize("name", ["pd-maskless-pyramid", "pva-maskless-sphere"])
-def test_kelly_faces_follow_the_printed_polynomial_of_their_own_angle(name: str) -> None:
-    sensor = replace(perfect(name), response="kelly")
-    sun = np.array([[0.36, 0.48, 0.8], [0.6, 0.0, 0.8], [-0.28, -0.42, math.sqrt(0.7452)]])
-    light = sensor.lit(lit_by(sun), sensor.fixed_pattern("test"))
-    c = np.clip(sun @ np.array(sensor.normals).T, 0, None)
-    kelly = -0.369 * c**3 + 0.637 * c**2 + 0.75 * c - 0.015
-    assert light == pytest.approx(np.clip(kelly, 0, None), abs=1e-12)
-
-
 def cells(**changes: Any) -> SolarCellSensor:
     return SolarCellSensor(CUBE, IDEAL, SolarCells(**changes), response="cosine", sun=POINT)
 

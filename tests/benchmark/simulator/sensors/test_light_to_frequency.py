@@ -9,10 +9,8 @@ import pytest
 from scipy.stats import norm
 
 from benchmark.simulator.light.sun_disc import SolarDisc
-from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.faces import CUBE
 from benchmark.simulator.sensors.light_to_frequency import (
     FrequencyCounter,
     FrequencySensor,
@@ -70,17 +68,6 @@ def test_without_other_noise_a_count_is_a_coin_and_with_much_a_measurement() -> 
     assert counts_variance(4.0 + part, np.full(3, 3.0)) == pytest.approx(9.0 + 1 / 6, rel=1e-3)
 
 
-def test_rates_fall_short_by_the_square_and_rise_with_the_temperature() -> None:
-    readout = FrequencyCounter(
-        1e5, 0.1, 0.0, 1e6, nonlinearity=0.002, gain_per_k=1e-4, temperature_c=75.0
-    )
-    seen = readout.rate(np.array([0.5, 1.0]), np.ones(2))
-    straight = 1.005 * np.array([0.5e5, 1e5])
-    assert seen == pytest.approx(straight - 0.002 * straight**2 / 1e5)
-    with pytest.raises(ValueError, match=r"nonlinearity.*0.1"):
-        FrequencyCounter(1e5, 0.1, 0.0, 1e6, nonlinearity=0.1)
-
-
 def test_frequencies_are_whole_counts_and_stop_at_full_scale() -> None:
     up = np.tile([0.0, 0.0, 1.0], (50, 1))
     sensor = counter(rate=1000.0, gate_s=0.02)
@@ -93,11 +80,3 @@ def test_frequencies_are_whole_counts_and_stop_at_full_scale() -> None:
     assert full.expected(lit_by(up[:1]), full.fixed_pattern("t"))[0, 0] == 1e6
     with pytest.raises(ValueError, match="gate_s and full_scale_hz must be positive"):
         FrequencyCounter(1.0, 0.0, 0.0, 1.0)
-
-
-def test_dark_frequency_doubles_with_the_stated_kelvins() -> None:
-    readout = FrequencyCounter(1e5, 0.1, 0.0, 1e6, DarkCurrent(5.0, temperature_c=39.0))
-    sensor = FrequencySensor(CUBE, readout, sun=POINT)
-    down = np.array([[0.0, 0.0, 1.0]])
-    seen = sensor.expected(lit_by(down), sensor.fixed_pattern("test"))[0]
-    assert seen == pytest.approx([20.0] * 4 + [1e5 + 20.0, 20.0])

@@ -288,23 +288,6 @@ def test_no_light_is_lost_anywhere_in_the_field(name: str) -> None:
     assert caught == pytest.approx(np.repeat(points[:, None] * open_px, len(ideal.axes), 1))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_slits_do_not_overlap_in_the_mask(name: str) -> None:
-    """Light of two slits is added: where they overlapped it would count twice."""
-    mask = datasets.get(name).setups["nominal"].sensor.camera.mask
-    place = (np.arange(4000) - 2000.0) * 0.002
-    reach = max(a.height_mm * math.cos(math.radians(a.rotation_deg)) for a in mask.apertures) / 2
-    for v in np.linspace(-reach, reach, 41):
-        open_count = np.zeros(place.size)
-        for a in mask.apertures:
-            turn = math.radians(a.rotation_deg)
-            x = place - a.x_mm
-            across = math.cos(turn) * x + math.sin(turn) * v
-            along = math.cos(turn) * v - math.sin(turn) * x
-            open_count += (np.abs(across) < a.width_mm / 2) & (np.abs(along) < a.height_mm / 2)
-        assert open_count.max() <= 1
-
-
 def test_noise_is_shot_read_and_rounding_and_dark_doubles() -> None:
     setup = datasets.get("ccd-slit").setups["nominal"]
     sensor = setup.sensor
@@ -329,18 +312,6 @@ def test_noise_is_shot_read_and_rounding_and_dark_doubles() -> None:
     ]
     assert dark[1] == pytest.approx(2 * dark[0])
     assert dark[0].mean() == pytest.approx(50.0, rel=0.01)
-
-
-def test_full_wells_hold_no_more() -> None:
-    sensor = datasets.get("ccd-slit").setups["nominal"].sensor
-    assert isinstance(sensor, LineSensor)
-    detector = replace(sensor.detector, sunlit_e=1e6)
-    bright = replace(sensor, detector=detector)
-    scene = scene_of(from_angles(np.zeros(1), np.zeros(1)))
-    seen = bright.observe(scene, bright.fixed_pattern("test"), NoiseStreams.named("test"))
-    # an amplifier half a percent short of proportion at a full well
-    read = 0.995 * detector.full_well_e
-    assert seen.max() == round(detector.offset_dn + read / detector.gain_e_per_dn)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ from shadows import shadows
 
 from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
-from benchmark.simulator.light.memory import memory
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
@@ -203,15 +202,6 @@ def test_the_row_through_the_spot_tells_the_time() -> None:
         assert np.abs(still.spot_px(late.sun) - still.spot_px(scene.sun)).max() > 0.3
 
 
-@pytest.mark.slow
-def test_a_row_is_exposed_when_it_is_wherever_the_window_lies() -> None:
-    sensor = turning(standard(), row_time_s=ROW_S)
-    here = scene_of(sensor, [(12.0, -7.0)], (40.0, -30.0, 20.0))
-    there = scene_of(sensor, [(12.0, -7.0)], (40.0, -30.0, 20.0), (3, 6))
-    one, other = sensor.lit(here)[0], sensor.lit(there)[0]
-    assert np.abs(one[6:, 3:] - other[:-6, :-3]).max() < NEAR * one.max()
-
-
 def test_shares_of_an_exposure_at_once_are_gauss_weights() -> None:
     moments, shares = row_shares(np.zeros(64), 0.01, 5)
     place, weight = np.polynomial.legendre.leggauss(5)
@@ -243,36 +233,6 @@ def test_directions_turn_against_the_sensor_and_stay_unit_vectors() -> None:
     assert np.linalg.norm(other, axis=1) == pytest.approx(1.0, abs=1e-14)
 
 
-@pytest.mark.slow
-def test_light_at_rest_is_kept_as_that_of_the_sensor_at_rest_and_no_other() -> None:
-    still = standard()
-    sensor = turning(still, row_time_s=ROW_S)
-    scene = scene_of(still, [(12.0, -7.0)])
-    moving = scene_of(still, [(12.0, -7.0)], (40.0, 0.0, 0.0))
-    alone = sensor.lit(moving)
-    memory.forget()
-    memory.cache_for("test")
-    try:
-        still.lit(scene)
-        hits = memory.hits
-        sensor.lit(scene)
-        assert memory.hits == hits + 1
-        for other in (
-            sensor,
-            replace(sensor, row_time_s=0.0),
-            replace(sensor, more_nodes=3),
-            replace(sensor, detector=replace(sensor.detector, exposure_s=0.02)),
-        ):
-            other.lit(moving)
-        other = replace(moving, rate_deg_s=-np.asarray(moving.rate_deg_s))
-        sensor.lit(other)
-        assert memory.hits == hits + 1, "each has light of its own"
-        assert sensor.lit(moving).tobytes() == alone.tobytes()
-        assert memory.hits == hits + 2
-    finally:
-        memory.forget()
-
-
 def test_blur_costs_information() -> None:
     preset = datasets.get("cmos-single-aperture")
     sensor, pattern = preset.setups["spinning"].sensor, preset.fixed_pattern("spinning")
@@ -293,29 +253,3 @@ def test_impossible_read_outs_are_refused() -> None:
         turning(standard(), more_nodes=-1)
     with pytest.raises(ValueError, match="row_time_s must be finite"):
         turning(standard(), row_time_s=math.inf)
-
-
-def test_what_does_not_turn_is_seen_at_one_moment_beside_what_does() -> None:
-    sensor = turning(standard(), row_time_s=ROW_S)
-    still = scene_of(sensor, [(5.0, 3.0), (-8.0, 2.0)])
-    assert still.origin_px is not None
-    assert sensor.nodes(still, still.origin_px).tolist() == [1, 1]
-    assert seen_at(still, np.array([0.5, 1.0])) is still.sun
-
-    rates = np.array([[0.0, 0.0, 0.0], [0.0, 40.0, 0.0]])
-    mixed = replace(still, rate_deg_s=rates)
-    first, second = sensor.nodes(mixed, still.origin_px)
-    assert first == 1 < second
-    later = seen_at(mixed, np.array([0.5, 0.5]))
-    np.testing.assert_array_equal(later[0], still.sun[0])
-    assert np.degrees(np.arccos(later[1] @ still.sun[1])) == pytest.approx(20.0, abs=0.5)
-
-    both, rested = sensor.lit(mixed), sensor.lit(still)
-    np.testing.assert_array_equal(both[0], rested[0])
-    assert np.abs(both[1] - rested[1]).max() > 10 * NEAR * rested.max()
-
-
-def test_rows_that_are_exposed_for_no_time_at_once_see_one_moment() -> None:
-    moments, shares = row_shares(np.full(5, 0.25), 0.0, 4)
-    assert moments.tolist() == [0.25]
-    assert shares.tolist() == [[1.0]] * 5

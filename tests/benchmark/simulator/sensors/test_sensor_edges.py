@@ -23,9 +23,7 @@ from benchmark.simulator.optics.rectangle_patterns import RectanglePattern
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.pixel_errors import PixelErrors
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter, FrequencySensor
 from benchmark.simulator.sensors.lit_pixels import LitPixels
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.sensors.position_sensitive import LateralEffect, PositionSensor
@@ -51,28 +49,6 @@ def shadows() -> MultiSpotSensor:
     mask = Mask((Aperture("round", 0.03, 0.03),))
     camera = Camera(0.4, mask, POINT, CoverGlass(), Assembly())
     return MultiSpotSensor(camera, detector, spectrum=None)
-
-
-def test_pixels_near_light_ask_their_sensor_for_all_that_is_of_whole_frames() -> None:
-    sensor, scene = shadows(), lit_by((0.0, 3.0), (5.0, -8.0))
-    pattern = sensor.fixed_pattern("unit")
-    pixels = LitPixels(sensor, scene, pattern)
-    for name, built in pixels.fixed_pattern("unit").items():
-        np.testing.assert_array_equal(built, pattern[name])
-    assert not pixels.origins(scene.sun, np.random.default_rng(0)).any()
-    frames, own = (
-        seen.observe(scene, pattern, NoiseStreams.named("test")) for seen in (sensor, pixels)
-    )
-    np.testing.assert_array_equal(frames, own)
-    assert frames.shape == (2, 20, 24)
-    read, again = (
-        seen.reference_readings(pattern, References(), NoiseStreams.named("test"))
-        for seen in (sensor, pixels)
-    )
-    assert read.keys() == again.keys() >= {"dark_dn", "flat_dn"}
-    for name, readings in read.items():
-        np.testing.assert_array_equal(readings, again[name])
-        assert readings.shape == (20, 24)
 
 
 def test_a_scene_of_uneven_light_that_does_not_slope_has_the_light_of_an_even_one() -> None:
@@ -129,19 +105,6 @@ def test_a_ghost_of_the_cover_glass_falls_beside_its_spot_whole() -> None:
     assert further == pytest.approx([2.0 * 0.5 * math.tan(angle) for angle in inside], abs=1e-9)
 
 
-def test_lines_without_amplifier_errors_have_the_variance_of_shot_noise_and_reading() -> None:
-    preset = datasets.get("ccd-slit")
-    saturated: Any = preset.setups["saturated"].sensor
-    quiet = replace(saturated, detector=replace(saturated.detector, errors=PixelErrors()))
-    scene, pattern = lit_by((14.0, -33.0)), quiet.fixed_pattern("unit")
-    expected, detector = quiet.expected(scene, pattern), quiet.detector
-    found, charge = quiet.variance(expected)[:, :-2], expected[:, :-2]
-    plain = charge + detector.read_noise_e**2 + detector.gain_e_per_dn**2 / 12.0
-    free = (charge > 0.0) & (charge < detector.full_well_e)
-    assert free.sum() > 100
-    np.testing.assert_allclose(found[free], plain[free], rtol=1e-3)
-
-
 def test_noise_of_columns_is_added_to_lines_that_bloom() -> None:
     preset = datasets.get("ccd-slit")
     saturated: Any = preset.setups["saturated"].sensor
@@ -158,21 +121,6 @@ def test_noise_of_columns_is_added_to_lines_that_bloom() -> None:
     assert added.std() == pytest.approx(500.0, rel=0.1)
 
 
-def test_flats_leave_less_unknown_of_a_converters_gain() -> None:
-    """Without flats the whole mismatch is unknown; it scales with the light."""
-    readout = FrequencyCounter(1e4, 1.0, 0.03, 1e6)
-    sensor = FrequencySensor(((0.0, 0.0, 1.0),), readout, sun=POINT)
-    scene = Scene(np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]]), np.ones(2), np.zeros(2))
-    expected = sensor.expected(scene, sensor.fixed_pattern("unit"))
-    light = expected - readout.dark.level()
-    none = sensor.unit_variance(expected, scene, References(0, 0))
-    np.testing.assert_allclose(none, (0.03 * light) ** 2, rtol=1e-12)
-    some = sensor.unit_variance(expected, scene, References(1, 0))
-    many = sensor.unit_variance(expected, scene, References(100, 0))
-    assert (many < some).all()
-    assert (some < none).all()
-
-
 def test_rims_a_whole_hole_apart_let_no_light_through() -> None:
     places, numbers = np.linspace(-3.0, 3.0, 7), (1.0, 1.0)
     light, skew = round_skew(places, places, numbers, (0.1, 0.1, 0.1, 0.1), apart=2.0)
@@ -180,14 +128,6 @@ def test_rims_a_whole_hole_apart_let_no_light_through() -> None:
     assert not light.any()
     assert not skew.any()
     assert not round_intensity(places, places, numbers, apart=2.0).any()
-
-
-def test_more_points_than_the_phase_asks_for_change_no_light() -> None:
-    places, numbers = np.linspace(-2.0, 2.0, 9), (1.5, 1.2)
-    usual = round_intensity(places, places, numbers)
-    many = round_intensity(places, places, numbers, points=200)
-    np.testing.assert_allclose(many, usual, atol=1e-9)
-    assert usual.max() > 1.0
 
 
 def test_a_foil_that_shades_its_whole_slit_leaves_no_light_at_the_ends() -> None:

@@ -18,7 +18,7 @@ from benchmark.simulator.light.environment import Earth, uniform_direction
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.readout.detectors import CurrentReadout, DarkCurrent, Quadrants
+from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.faces import CUBE, FaceSensor
@@ -115,14 +115,6 @@ def test_area_of_a_turned_square_in_a_box_is_that_of_the_clipped_polygon(
     assert convex_area(np.vstack([window, lines]), NO_DISCS) == pytest.approx(expected, abs=1e-9)
 
 
-def test_coinciding_boundaries_count_once() -> None:
-    square = box(0, 1, 0, 1)
-    assert convex_area(np.vstack([square, square]), NO_DISCS) == pytest.approx(1.0)
-    disc = np.array([[0.0, 0.0, 1.0]])
-    assert convex_area(np.empty((0, 3)), np.vstack([disc, disc])) == pytest.approx(math.pi)
-    assert convex_area(box(2, 3, 2, 3), disc) == 0.0
-
-
 def test_touching_from_outside_is_no_overlap() -> None:
     disc = np.array([[0.0, 0.5, 0.25]])
     assert convex_area(box(0.25, 1.5, 0.0, 0.9), disc) == 0.0
@@ -215,14 +207,6 @@ def test_finite_disc_keeps_the_cosine_law_away_from_the_limb_and_lights_grazing_
     assert light[0, ::2] == pytest.approx(shrink * sun[0])
     assert light[1, 2:] == pytest.approx(light[1, 2])  # Sun in four face planes: half a disc each
     assert 0 < light[1, 2] < math.sin(math.radians(0.533 / 2)) / 2
-
-
-def test_kelly_currents_follow_the_printed_polynomial() -> None:
-    sensor = FaceSensor(CUBE, replace(IDEAL, dark=DarkCurrent(0.5)), response="kelly", sun=POINT)
-    c = np.array([0.05, 0.3, 0.7, 1.0])
-    sun = np.stack([np.sqrt(1 - c**2), np.zeros(4), c], axis=1)
-    currents = sensor.expected(lit_by(sun), sensor.fixed_pattern("test"))[:, 4]
-    assert currents == pytest.approx(100 * (-0.369 * c**3 + 0.637 * c**2 + 0.75 * c - 0.015) + 0.5)
 
 
 def test_built_normals_miss_the_nominal_ones_by_the_stated_angle() -> None:
