@@ -299,14 +299,6 @@ def test_studies_are_graded_for_what_their_evidence_says(
     assert any(one.part == part and says in one.text for one in found.departures), found.sentence
 
 
-def test_no_study_without_a_title_is_faithful(
-    survey: Facts, everything: dict[str, Resolution]
-) -> None:
-    untitled = [key for key, study in survey.studies.items() if not study.title]
-    assert len(untitled) > 20
-    assert all(everything[key].fidelity.grade != "faithful" for key in untitled)
-
-
 def test_projections_run_with_fitted_constants(everything: dict[str, Resolution]) -> None:
     for key in ("deBoer2013", "Xie2012", "ONeill2020", "Rhee2012", "Coutinho2022"):
         best = everything[key].best_pipeline

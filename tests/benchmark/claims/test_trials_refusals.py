@@ -11,18 +11,9 @@ import numpy as np
 import pytest
 
 from algorithms.contract import AboutModel, FeatureKind, SensorGeometry
-from benchmark import datasets
 from benchmark.claims.experiments.coarse import c18_interference as c18
-from benchmark.claims.experiments.frames import c44_black_sun as c44
-from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.conditions.cone import ConeField
-from benchmark.datasets.standard import ccd_lens, pd_maskless_pyramid
-
-
-def test_a_camera_without_a_black_sun_has_no_centre_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(c44, "PRESET", ccd_lens.PRESET)
-    with pytest.raises(TypeError, match="ccd-lens has no black Sun; got BloomingSensor"):
-        c44.trial(1000)
+from benchmark.datasets.standard import pd_maskless_pyramid
 
 
 @dataclass
@@ -58,11 +49,3 @@ def test_a_method_that_interference_silences_has_no_ratio_of_errors(
     _, errors = found.lines["pyramidal, constant"]
     assert np.isfinite(errors).tolist() == [share < c18.JUDGED for share in c18.SHARES]
     assert errors[0] == errors[1] == 0.0  # an answer that never moves
-
-
-def test_a_perfect_calibration_needs_no_true_directions() -> None:
-    preset = datasets.get("qpd-single-aperture")
-    truly = with_true_directions(preset)
-    assert truly.condition("ideal-calibration").bench is None
-    assert preset.reference_error_deg("nominal") > 0.0
-    assert truly.reference_error_deg("nominal") == 0.0

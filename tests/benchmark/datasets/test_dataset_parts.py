@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets import Condition, Preset, preset
+from benchmark.datasets import Condition, Preset
 from benchmark.datasets.fields import AngleField, SphereField
 from benchmark.datasets.repeats import Repeats
 from benchmark.seeds import generator
-from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.scene import Scene
@@ -80,33 +80,6 @@ def nothing_asked():
 # Batches
 
 
-@pytest.mark.parametrize(
-    ("split", "n", "batch", "asked"),
-    [
-        ("calibration", None, None, [10, 10, 5]),
-        ("calibration", None, 5, [5] * 5),
-        ("calibration", 25, 24, [24, 1]),
-        ("calibration", 25, 25, [25]),
-        ("calibration", 12, None, [10, 2]),
-        ("calibration", 1, None, [1]),
-        ("calibration", 99, None, [10, 10, 5]),
-        # passes over the same poses share their light
-        ("repeat", None, None, [3, 3, 3, 3]),
-        ("repeat", 7, 2, [3, 3, 1]),
-    ],
-)
-def test_samples_are_simulated_so_many_together_and_no_more_than_wanted(
-    split: str, n: int | None, batch: int | None, asked: list[int], monkeypatch: Any
-) -> None:
-    monkeypatch.setattr(preset, "BATCH", 10)
-    whole = fake(batch=1).generate("nominal", split)
-    ASKED.clear()
-    found = fake(batch=batch).generate("nominal", split, n)
-    assert asked == ASKED
-    np.testing.assert_array_equal(found.observations, whole.observations[: sum(asked)])
-    np.testing.assert_array_equal(found.sun, whole.sun[: sum(asked)])
-
-
 def test_repeats_are_poses_of_the_test_split_pass_after_pass() -> None:
     one = fake()
     test, repeat = one.scene("nominal", "test"), one.scene("nominal", "repeat")
@@ -141,20 +114,7 @@ def test_less_than_one_sample_is_refused(n: int) -> None:
         fake().generate("nominal", "test", n)
 
 
-def test_a_sensor_without_elements_of_its_own_has_no_references() -> None:
-    one = fake()
-    assert one.references("nominal") == {}
-    for asked in (one.references, one.reference_error_deg):
-        with pytest.raises(ValueError, match="has no condition 'dusk'"):
-            asked("dusk")
-
-
 # Cards
-
-
-def test_a_sensor_that_sees_no_earth_is_refused_one() -> None:
-    with pytest.raises(ValueError, match=r"\bTeller$"):
-        replace(fake().setups["nominal"], earth=Earth())
 
 
 # Directions

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 import json
 import math
@@ -18,7 +17,6 @@ from algorithms.contract import Observation
 from benchmark import datasets
 from benchmark.datasets import Samples, UnknownDatasetError, samples_hash
 from benchmark.datasets.card import differences, merge
-from benchmark.datasets.conditions.full_frames import FullFramePreset
 from benchmark.simulator.sensors.frames import FrameSensor
 
 ROOT = Path(__file__).parents[3]
@@ -235,31 +233,3 @@ def test_spots_lie_whole_inside_their_windows_neither_dark_nor_saturated(conditi
     # one pixel in a hundred is hot at the end of life
     assert np.mean(lit == 2**sensor.detector.bits - 1) < (0.02 if condition == "aged" else 1e-9)
     assert np.mean(frames == 0) < 1e-3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of directions from all over the calibration split."""
-    preset = datasets.get(name)
-    whole = type(preset).scene
-    # whole frames take up to a second each
-    count = 5 if isinstance(preset, FullFramePreset) or preset.mask == "Lens" else 25
-
-    def some(self, condition, split, n=None):
-        scene = whole(self, condition, split, n)
-        rows = np.linspace(0, len(scene) - 1, count).round().astype(int)
-        columns = {f.name: getattr(scene, f.name) for f in dataclasses.fields(scene)}
-        return dataclasses.replace(
-            scene, **{key: column[rows] for key, column in columns.items() if column is not None}
-        )
-
-    monkeypatch.setattr(type(preset), "scene", some)
-    low, nominal, high = (
-        preset.bound(c, "calibration").angle_deg for c in ("low-noise", "nominal", "high-noise")
-    )
-    seen = np.isfinite(low) & np.isfinite(nominal) & np.isfinite(high)
-    assert len(seen) == count
-    assert seen.mean() > 0.8
-    assert (low[seen] <= nominal[seen]).all()
-    assert (nominal[seen] <= high[seen]).all()

@@ -11,7 +11,7 @@ import pytest
 
 from algorithms.compensations.environment.temperature import TemperatureDrift
 from benchmark import datasets
-from benchmark.datasets.conditions.thermal_chamber import Chamber, ThermalChamberPreset
+from benchmark.datasets.conditions.thermal_chamber import Chamber
 from benchmark.simulator.flight.drift import REFERENCE_K
 from benchmark.simulator.light.environment import Irradiance
 from registry.studies import facts
@@ -47,13 +47,6 @@ def test_no_pixel_is_full(name: str) -> None:
         full = detector.offset_dn + detector.full_well_e / detector.gain_e_per_dn
         brightest = preset.generate(condition, "test").observations.max()
         assert brightest < min(full, 2**detector.bits - 1)
-
-
-def test_eight_bits_are_read_and_pairs_of_slits_cross() -> None:
-    preset = datasets.get("ccd-multi-slit-ss-411")
-    assert preset.generate("nominal", "test", 20).observations.max() <= 255
-    slants = [slant for _, slant, _ in preset.geometry.slits]
-    assert slants == [-45.0, -45.0, 45.0, 45.0]
 
 
 def test_faces_of_a_pyramid_stand_at_the_tilt_that_is_drawn() -> None:
@@ -111,16 +104,3 @@ def test_the_temperature_coefficients_are_those_of_the_unit() -> None:
     # relative to the level at the mean temperature, not at 25 deg C
     level = 1.0 + drawn * (drift.reference_k_ - REFERENCE_K)
     np.testing.assert_allclose(drift.coefficients_, drawn / level, rtol=0.01)
-
-
-def test_a_chamber_refuses_what_it_cannot_heat() -> None:
-    with pytest.raises(ValueError, match="no temperatures"):
-        dataclasses.replace(CHAMBER, chambers={"nominal": CHAMBER.chambers["nominal"]})
-    with pytest.raises(ValueError, match="in order"):
-        Chamber((40.0, -20.0), (0.0, 1.0))
-    with pytest.raises(ValueError, match="above"):
-        Chamber((-300.0, 0.0), (0.0, 1.0))
-    still = datasets.get("pd-maskless-cube")
-    chambers = dict.fromkeys(still.conditions, CHAMBER.chambers["nominal"])
-    with pytest.raises(TypeError, match="FaceSensor"):
-        ThermalChamberPreset.of(still, chambers)

@@ -49,7 +49,7 @@ QUICK = [("pd-maskless-pyramid", 22.0, -31.0, 500), ("qpd-maskless-pyramid", 12.
 def setup_of(name: str) -> Condition:
     """The nominal condition; of pixel arrays no more than a window around the spot.
 
-    Errors of pixels and amplifiers are left to `test_likelihood_columns`.
+    Without errors of pixels and amplifiers: `test_common_noise` has what columns share.
     """
     setup = datasets.get(name).setups["nominal"]
     sensor: Any = setup.sensor

@@ -7,7 +7,6 @@ import pytest
 from fake_atlas import Diodes
 from fake_results import cell, components
 
-from benchmark.contract import ON_BENCH
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.results.components import (
     KEYED,
@@ -68,15 +67,6 @@ def test_the_key_of_a_stage_begins_that_of_the_next_and_knows_nothing_of_what_fo
         assert [one != two for one, two in zip(keys, now, strict=True)] == [
             number >= moved for number in range(len(STAGES))
         ], name
-
-
-def test_a_condition_s_digest_is_its_own_and_drawn_benches_read_the_first():
-    known = components()
-    assert known.condition_digest("d", "c2") != known.condition_digest("d", "c")
-    assert known.condition_digest("d", ON_BENCH) == known.condition_digest("d", "c")
-    assert known.condition_digest("d", "gone") == ""
-    with pytest.raises(ComponentsError, match="'nobody'"):
-        known.condition_digest("nobody", "c")
 
 
 def test_current_components_are_of_the_code_as_it_is():

@@ -182,14 +182,6 @@ def test_a_line_that_no_runner_wrote_there_is_named(store, change, where):
         Record(store)
 
 
-def test_lines_lost_at_the_end_are_measured_again(store):
-    record = Record(store)
-    keep_all(record)
-    lines = record.journal.read_text().splitlines(keepends=True)
-    record.journal.write_text("".join(lines[:-1]))
-    assert set(Record(store).scores) == {cell("a")}
-
-
 def test_a_second_runner_is_refused_with_the_first_ones_process(store):
     hold = (
         "import sys; from benchmark.results.store import Store; "

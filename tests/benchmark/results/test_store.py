@@ -75,12 +75,6 @@ def test_a_table_reads_back_every_number_and_word(rows, tmp_path_factory):
     assert [row for _, row in read_csv(path, {"a": number, "b": number, "text": str})] == rows
 
 
-def test_a_data_set_without_scores_has_no_file_any_more(store):
-    write(store, {cell("a"): numbers(), cell("a", "c"): numbers()})
-    write(store, {cell("a"): numbers()})
-    assert [path.name for path in store.scores_directory.iterdir()] == ["d.csv"]
-
-
 def test_writing_the_same_again_touches_no_file(store):
     scores, pins = {cell("a"): numbers()}, [pin()]
     write(store, scores, pins)

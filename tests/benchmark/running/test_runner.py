@@ -149,27 +149,6 @@ def test_data_that_change_are_measured_again_whatever_their_version(store):
     assert (store.scores(), store.pins()) == before
 
 
-def test_a_failure_is_a_row_with_its_reason_and_is_tried_again(store, log, monkeypatch):
-    parts = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Broken, fake_atlas.Unbuildable)
-    summary = measure(store, parts)
-    reasons = {cell.model: reason for cell, reason in summary.failed}
-    assert reasons == {
-        "fake-broken": "RuntimeError: gives up always",
-        "fake-unbuildable": "RuntimeError: no such sensor",
-    }
-    failed = store.query(status="failed")
-    assert len(failed) == len(summary.failed) == 8
-    assert all(row["rms_deg"] is None and row["over_bound"] is None for row in failed)
-    assert len(store.query(status="ok")) == 4
-    attempts = log().count("fit fake-broken")
-    before = contents(store)
-    assert measure(store, parts).computed == 8
-    assert log().count("fit fake-broken") == 2 * attempts
-    assert contents(store) == before
-    monkeypatch.setenv("FAKE_ATLAS_MENDED", "1")
-    assert {cell.model for cell, _ in measure(store, parts).failed} == {"fake-unbuildable"}
-
-
 def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
     class Wrong(fake_atlas.Currents):
         def extract(self, observations):
@@ -222,12 +201,6 @@ def test_dask_without_its_package_is_a_clear_error(store, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ImportError, match="distributed"):
         measure(store, scheduler="tcp://127.0.0.1:1")
-
-
-def test_no_workers_is_refused(store):
-    with pytest.raises(ValueError, match="at least 1; got 0"):
-        measure(store, workers=0)
-    assert contents(store) == {}
 
 
 def test_a_refusal_is_a_result_that_is_kept(store, log):
