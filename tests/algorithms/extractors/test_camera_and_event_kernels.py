@@ -15,9 +15,6 @@ from algorithms.extractors.frames.cameras import circles_kernel as circles
 from algorithms.extractors.frames.cameras import dark_holes_kernel as holes
 from algorithms.extractors.frames.cameras.hough import HoughCircle
 
-# Blooming lines
-
-
 # Circles
 
 

@@ -69,9 +69,6 @@ def test_spots_are_scipys_labels_of_touching_pixels(seed, density, height, width
     )
 
 
-# BCTM
-
-
 # MCAM
 
 

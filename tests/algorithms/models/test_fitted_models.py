@@ -196,25 +196,6 @@ def test_a_table_reaches_as_far_along_each_axis_as_the_samples_do(long):
     assert separation_deg(table.predict(features), sun).max() < 1e-5
 
 
-def test_blended_polynomials_are_the_weighted_sum_of_two_neighbours():
-    """He2013: compensation is the weighted sum of two neighbouring polynomials."""
-    nominal = scattered(20.0, 3000)
-    errors = np.column_stack([np.sin(nominal[:, 1] / 5), np.cos(nominal[:, 0] / 6)])
-    table = BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0)
-    table.fit(np.tan(np.radians(nominal[:, ::-1])), sun_from_angles(nominal + 0.1 * errors))
-    row, weight, beta = 12, 0.35, 7.3
-    alpha = table.alpha_axis_.start + row + weight
-    scaled = (beta - table.beta_middle_deg_) / table.beta_half_range_deg_
-    polynomials = [
-        np.polynomial.Chebyshev(table.coefficients_deg_[row + k, :, axis])(scaled)
-        for k in (0, 1)
-        for axis in (0, 1)
-    ]
-    blend = (1 - weight) * np.array(polynomials[:2]) + weight * np.array(polynomials[2:])
-    found = angles_from_sun(table.predict([np.tan(np.radians([beta, alpha]))]))[0]
-    np.testing.assert_allclose(found, np.array([alpha, beta]) + blend, atol=1e-12)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("model", TABLES)
 def test_tables_average_repeated_samples(model):
@@ -273,14 +254,6 @@ def test_what_blended_polynomials_accept_does_not_hang_on_the_order_of_sums():
     found = rows.fit(features, sun_from_angles(angles)).predict(features)
     turned = rows.fit(features[::-1], sun_from_angles(angles)[::-1]).predict(features)
     np.testing.assert_allclose(turned, found, rtol=0, atol=1e-9)
-
-
-def test_blended_polynomials_refuse_samples_on_too_few_columns():
-    features = np.tan(np.radians(grid(20.0, 5)))  # 5 different beta, 9 terms
-    with pytest.raises(UnusableDataError, match="settle"):
-        BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0, degree=8, smoothing=1e-3).fit(
-            features, sun_from_angles(grid(20.0, 5))
-        )
 
 
 @pytest.mark.parametrize(

@@ -91,15 +91,6 @@ def test_cells_serve_a_field_in_whose_every_direction_three_are_lit(
             WeightedCells.for_sensor(sensor, FeatureKind.SIGNALS)
 
 
-# Faces
-
-
-# Tables
-
-
-# Regressions
-
-
 # Dials
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from algorithms.angles import separation_deg, sun_from_angles
-from algorithms.contract import FeatureKind, Floats, SensorGeometry, UnsuitableDesignError
+from algorithms.contract import FeatureKind, Floats, SensorGeometry
 from algorithms.contract import UnusableDataError as Unusable
 from algorithms.models.geometric.panoramic_temperature import WarmCells
 from algorithms.models.multiplex.coded_spacing import CodedSpacing
@@ -78,16 +78,6 @@ def test_a_panel_whose_samples_are_all_of_one_pose_is_taken_from_its_opposite() 
     assert separation_deg(model.predict(signals), sun).max() < 1e-6
 
 
-def test_panels_of_a_pair_that_neither_settles_are_refused_with_the_reason() -> None:
-    sun = sphere()
-    side = np.tile([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], (10, 1))
-    sun = np.vstack([sun[np.abs(sun[:, 0]) < 0.02], side])
-    sun = np.vstack([sun, sphere(40, 4) * [0.0, 1.0, 1.0]])
-    sun /= np.linalg.norm(sun, axis=1, keepdims=True)
-    with pytest.raises(Unusable, match="4 terms; the 10 given settle only 1"):
-        TrigonometricPanels(CUBE).fit(np.maximum(sun @ RAYS.T, 0.0), sun)
-
-
 def test_panels_that_look_along_one_plane_as_fitted_are_refused() -> None:
     sun = sphere()
     signals = sun @ RAYS.T
@@ -133,14 +123,6 @@ def test_a_curve_without_bend_is_a_straight_line(
     assert separation_deg(model.directions(line, balances, {}), sun).max() < 1e-6
 
 
-def test_a_curve_that_turns_back_in_the_middle_answers_nothing(
-    straight: tuple[SigmoidBalance, Floats, Floats],
-) -> None:
-    model, balances, _ = straight
-    back = np.array([0.5, 0.0, 0.0, 0.0, -0.5, 0.01] * 2)  # the wave's slope is against the line's
-    assert np.isnan(model.directions(back, balances, {})).all()
-
-
 # Coded masks
 
 
@@ -169,12 +151,6 @@ def test_the_edge_of_a_coded_mask_s_field_is_within_a_right_angle(half_fov_deg: 
     model = CodedSpacing.for_sensor(coded(), FeatureKind.SPOTS)
     with pytest.raises(ValueError, match=rf"half_fov_deg must be in \(0, 90\); got {half_fov_deg}"):
         replace(model, half_fov_deg=half_fov_deg)
-
-
-@pytest.mark.parametrize("without", [{"apertures": ()}, {"focal_length_mm": 0.0}])
-def test_a_coded_mask_has_apertures_and_a_height(without: dict[str, Any]) -> None:
-    with pytest.raises(UnsuitableDesignError, match=r"needs .*apertures"):
-        CodedSpacing.for_sensor(coded(**without), FeatureKind.SPOTS)
 
 
 @pytest.mark.slow

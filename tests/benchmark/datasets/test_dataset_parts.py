@@ -74,9 +74,6 @@ def nothing_asked():
     ASKED.clear()
 
 
-# Streams
-
-
 # Batches
 
 
@@ -112,9 +109,6 @@ def test_poses_stand_in_the_middle_of_equal_parts(
 def test_less_than_one_sample_is_refused(n: int) -> None:
     with pytest.raises(ValueError, match=rf"^n\b.*\b1\b.* {n}$"):
         fake().generate("nominal", "test", n)
-
-
-# Cards
 
 
 # Directions

@@ -87,27 +87,6 @@ def test_a_number_stands_beside_its_own_kind(
     assert found.place == ("fake", "hot", "e", "m"), "of the conditions measured, the study's own"
 
 
-def test_what_is_not_measured_has_no_ratio_and_stands_first() -> None:
-    assert beside("precision", "1sigma", repeatability_deg=None).ratio is None
-    rows = headlines(
-        {("fake", "nominal", "e", "m"): score()},
-        [
-            study("Near", {("accuracy", "rms"): 0.11}),
-            study("None", {("accuracy", "rms"): 0.2}),
-            study("Far", {("accuracy", "rms"): 0.001}),
-            study("Below", {("accuracy", "rms"): 3.0}),
-            study("Silent", {}),
-        ],
-        {
-            **dict.fromkeys(("Near", "Far", "Below", "Silent"), resolution(("fake", "nominal"))),
-            "None": resolution(("other", "nominal")),
-        },
-        {("Near", "accuracy"): "Alike."},
-    )
-    assert [row.study for row in rows] == ["None", "Far", "Below", "Near"]
-    assert [row.difference for row in rows] == ["", "", "", "Alike."]
-
-
 @pytest.fixture(scope="module")
 def published() -> Sequence[Headline]:
     known = Knowledge()

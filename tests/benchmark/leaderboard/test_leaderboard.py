@@ -14,14 +14,12 @@ from fake_atlas import Broken, Diodes, Gaps, LeastSquares
 from fake_results import copied
 
 from benchmark.contract import ON_BENCH
-from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import FORMATS, PAGE, render
 from benchmark.leaderboard.scope import UNITS
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.results.times import Machine, Time, Times
 from benchmark.running import condition_data
 from benchmark.running.pinning import UnversionedChangeError
 from benchmark.sweeps.record import swept
@@ -168,13 +166,6 @@ def test_what_is_no_longer_planned_goes(published):
     assert "fake-second" not in (published / PAGE).read_text()
 
 
-def test_units_that_lead_no_more_go(published, monkeypatch):
-    monkeypatch.setattr(scope, "LEADING", 1)
-    update(published, progress=silent, parts=PARTS)
-    others = Store(published).rows(unit=1)
-    assert {row["extractor"] for row in others} == {"fake-currents"}
-
-
 def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_path):
     class Alike(LeastSquares):
         """Turns what the other finds by a thousandth of a degree."""
@@ -238,20 +229,6 @@ def test_json_and_csv_hold_every_stored_number(made):
                 assert float(line[name]) == value
             else:
                 assert line[name] == str(value)
-
-
-def test_times_stand_beside_the_numbers_with_their_machine(made):
-    time = Time("fake-diodes", "fake-gaps", "fake-least-squares", 0.5, 0.1)
-    machine = Machine("fake", 1, "3.11", "2.4", "2026-11-28", "a loop", 15.0)
-    board = board_of(Store(made), Times({time.pipeline: time}, machine))
-    assert {
-        (r["extractor"], r["latency_us"], r["time_ratio"]) for r in board["datasets"][0]["rows"]
-    } == {
-        ("fake-currents", None, None),
-        ("fake-gaps", 7.5, 0.5),
-    }
-    assert board["timed_on"]["processor"] == "fake"
-    assert board_of(Store(made))["timed_on"] is None
 
 
 class Tags(HTMLParser):
