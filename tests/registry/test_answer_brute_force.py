@@ -39,7 +39,7 @@ def brute_force(survey: Facts, timed: Measurements) -> BruteForce:
 
 
 @pytest.mark.parametrize(
-    ("number", "seed"), [(40, 11), pytest.param(500, 50, marks=pytest.mark.slow)]
+    ("number", "seed"), [(20, 11), pytest.param(500, 50, marks=pytest.mark.slow)]
 )
 def test_architectures_evidence_and_order_are_those_of_brute_force(
     number: int, seed: int, timed: Measurements, brute_force: BruteForce

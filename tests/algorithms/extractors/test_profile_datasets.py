@@ -26,7 +26,7 @@ def test_simulated_suns_are_found_where_light_falls(name):
     """To a few percent of the mask's height: assembly, or what a cubic leaves of the glass."""
     preset = datasets.get(name)
     design = preset.geometry
-    count = 240 if isinstance(preset, FlightPreset) else 60  # an orbit begins with its eclipse
+    count = 240 if isinstance(preset, FlightPreset) else 30  # an orbit begins with its eclipse
     samples = preset.generate("nominal", "test", count)
     seen = preset.bound("nominal", "test", count).observable
     sun, observations = samples.sun[seen], samples.observations[seen]

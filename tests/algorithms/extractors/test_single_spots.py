@@ -176,7 +176,7 @@ def difference(lit, x, y, half, shape):
 
 @pytest.mark.parametrize("shape", ["round", "square"])
 def test_tm_differs_least_among_all_candidates_and_their_neighbourhood(shape):
-    """Brute force over every lit pixel, as printed, and over a sub-pixel grid about the answer."""
+    """Over every lit pixel, as alg:TM prints it, and over a sub-pixel grid about the answer."""
     rng = np.random.default_rng(4)
     for centre in rng.uniform(12, 16, (6, 2)):
         image = noisy(discs([centre], shape=(28, 30), radius=5.3), int(centre[0] * 1e3))

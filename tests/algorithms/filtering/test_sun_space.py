@@ -72,8 +72,16 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
 FILTERS = {"extended": ExtendedKalman(), "unscented": SigmaPointKalman(), "cubature": CUBATURE}
 
 
-@pytest.mark.parametrize("name", ["faces", "spot", "head"])
-@pytest.mark.parametrize("by", FILTERS)
+@pytest.mark.parametrize(
+    ("name", "by"),
+    [
+        ("faces", "extended"),
+        ("spot", "extended"),
+        ("head", "extended"),
+        ("head", "unscented"),
+        ("head", "cubature"),
+    ],
+)
 def test_errors_and_innovations_are_as_large_as_the_filter_says(name: str, by: str) -> None:
     """100 runs: squares in units of the filter's own covariance within their 95 % bounds."""
     space, kalman = SPACES[name], FILTERS[by]

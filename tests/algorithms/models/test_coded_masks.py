@@ -257,8 +257,8 @@ def test_a_mask_without_a_code_is_not_read(cls):
     grid = np.stack(np.meshgrid(np.arange(-8, 9), np.arange(-8, 9)), -1).reshape(-1, 2) * 0.3
     geometry = design(tuple((x, y, 0.05) for x, y in grid.tolist()))
     model = model_of(cls, geometry)
-    sun = field(60, 20.0)
-    features = lists(places_px(geometry), cast(sun), model.spots).reshape(60, -1)
+    sun = field(30, 20.0)
+    features = lists(places_px(geometry), cast(sun), model.spots).reshape(30, -1)
     reading = model.read(features)
     assert np.isnan(reading.displacement).all()
     assert reading.ambiguous.all()

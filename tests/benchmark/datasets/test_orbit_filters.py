@@ -22,8 +22,8 @@ from benchmark.simulator.flight.gyro import Gyro, rotation_vectors_deg
 from benchmark.simulator.flight.orbit import DAY_S, YEAR_DAYS
 
 FILTERS = {n: m for n, m in discover_models().items() if getattr(m, "sequential", False)}
-#: One model of the Sun's motion, several at once, and one that learns what drifts.
-FEW = {"extended-kalman", "multiple-models", "assembly-drift"}
+#: One model of the Sun's motion, and one that learns what drifts.
+FEW = {"extended-kalman", "assembly-drift"}
 CUBE = datasets.get("pd-orbit")
 
 

@@ -33,7 +33,7 @@ def test_they_are_those_that_the_runner_scores(dataset: str, name: str) -> None:
 def test_windows_in_parts_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     preset = datasets.get("cmos-single-aperture")
     extractor = installed_parts().extractor("weighted-spots").for_sensor(preset.geometry)
-    samples, by = preset.generate("nominal", "test", 10), correction(preset, "nominal")
+    samples, by = preset.generate("nominal", "test", 5), correction(preset, "nominal")
     whole = features.features_of(extractor, samples, by)
     monkeypatch.setattr(features, "_LARGE_BYTES", 0)
     monkeypatch.setattr(features, "_PART_BYTES", 8 * samples.observations[:3].size)
