@@ -43,12 +43,9 @@ $(DEVELOPING): $(SERVING) requirements-dev.lock
 	$(PIP) --require-hashes -r requirements.lock -r requirements-dev.lock
 	touch $@
 
-# Numerical kernels, compiled once and kept: else every first call would wait for its own. Tests hand
-# in arrays of types that nothing else does: some of them are run, which also keeps the bytecode of
-# all that tests import.
+# Numerical kernels, compiled once and kept: else every first call would wait for its own.
 $(COMPILED): $(DEVELOPING)
 	$(BIN)/sunatlas compile --workers $(WORKERS) --quiet
-	-$(TEST) -m "compiles and not slow" --quiet > /dev/null
 	touch $@
 
 # The guide, kept in the user's cache; quick where its pages have not changed.

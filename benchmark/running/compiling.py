@@ -8,7 +8,7 @@ is calibrated once, where that costs least.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 
@@ -140,14 +140,11 @@ def compile_kernels(
     makers = [_Data(preset) for preset in known.presets.values()]
     readers = list(_readers(known))
     solvers = list(_solvers(known))
-    done, total = 0, len(makers) + len(readers) + len(solvers)
-    for works in (makers, readers, solvers):
-        some: Iterable[_Work] = works
-        with closing(as_completed(_call, some, workers)) as called:
-            for name in called:
-                done += 1
-                progress(done, total, name)
-    return total
+    works: list[_Work] = [*makers, *readers, *solvers]
+    with closing(as_completed(_call, works, workers)) as called:
+        for done, name in enumerate(called, 1):
+            progress(done, len(works), name)
+    return len(works)
 
 
 _Work = _Data | _Reading | _Solving

@@ -17,7 +17,6 @@ def test_medians_are_numpys_and_nan_where_a_row_holds_one(rows):
     np.testing.assert_array_equal(medians(rows), np.median(rows, axis=1))
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize(
     "dtype", ["uint16", *(pytest.param(one, marks=pytest.mark.slow) for one in ("uint8", "int64"))]
 )

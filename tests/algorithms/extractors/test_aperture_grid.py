@@ -50,7 +50,6 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
     return displacement[0], partners[0].tolist()
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize(("frame", "place"), [((40, 100), (52.0, 18.0)), ((100, 90), (41.0, 71.0))])
 def test_the_displacement_is_the_mean_of_the_matched(frame, place):
     rng = np.random.default_rng(3)

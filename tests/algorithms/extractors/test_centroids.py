@@ -88,7 +88,6 @@ def test_bcm_is_the_printed_loop_to_the_last_bit(frames):
     assert BasicCentroid().extract(frames)[0].tolist() == bcm_as_printed(frames[0])
 
 
-@pytest.mark.compiles
 @settings(deadline=None, derandomize=True, max_examples=60)
 @given(small_frames, st.sampled_from([0.0, 0.1, 0.3, 0.5, 0.77, 0.99]))
 def test_bctm_is_the_printed_loop(frames, mu):
@@ -131,7 +130,6 @@ def test_centroids_agree_with_scipy_and_opencv():
         np.testing.assert_allclose(smooth[k, ::-1], ndimage.center_of_mass(mean), atol=1e-9)
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize("extractor", CENTROIDS, ids=str)
 def test_a_symmetric_spot_is_found_at_its_centre(extractor):
     centres = np.array([[27.5, 23.5], [27.25, 23.0], [28.0, 23.875]])
@@ -140,7 +138,6 @@ def test_a_symmetric_spot_is_found_at_its_centre(extractor):
     np.testing.assert_allclose(extractor.extract(symmetric), centres[:1], atol=1e-12)
 
 
-@pytest.mark.compiles
 @settings(deadline=None, derandomize=True, max_examples=40)
 @given(
     hnp.arrays(np.uint16, (7, 7), elements=st.integers(1, 4000)),
@@ -217,7 +214,6 @@ def test_background_estimation_makes_a_pedestal_harmless(method, background):
         )
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize("method", [BasicCentroid, ThresholdedCentroid, FilteredCentroid])
 @pytest.mark.parametrize("window", [15, 21])
 def test_window_is_the_centroid_of_the_cut_out_patch(method, window):

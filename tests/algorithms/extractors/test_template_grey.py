@@ -18,7 +18,6 @@ def rms(found, centres):
     return float(np.sqrt(np.mean((found - centres) ** 2)))
 
 
-@pytest.mark.compiles
 def test_a_clean_disc_is_found_far_finer_than_from_two_levels():
     centres = DISC.centres(100)
     frames = DISC.expected(centres)

@@ -158,7 +158,6 @@ def still(sun: np.ndarray) -> Scene:
     return Scene(sun, np.ones(len(sun)), np.full(len(sun), 0.002), np.zeros((len(sun), 2), int))
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize(
     "spectrum",
     [

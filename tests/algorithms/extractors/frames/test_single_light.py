@@ -105,7 +105,6 @@ def test_an_answer_to_something_else_than_the_light_is_none():
     assert refused_flags(flags).tolist() == [False, True, True, False]
 
 
-@pytest.mark.compiles
 def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
     """A slit's line is no spot, yet it is what its sensor sees."""
     assert light_of(SENSOR) == "spot"

@@ -66,7 +66,6 @@ def test_one_patch_throws_one_image_of_the_aperture() -> None:
     assert centre == pytest.approx(spot, abs=0.02)  # pixels average over their area
 
 
-@pytest.mark.compiles
 def test_earthlight_is_what_each_pixel_sees_through_the_hole() -> None:
     """Brute force, traced from the pixel outwards: the share of sky in the hole, Earth or not."""
     sensor = cmos()

@@ -79,7 +79,6 @@ def test_readings_without_noise_tell_their_code_however_often() -> None:
     assert readings_information(0.0, 0) == 0.0
 
 
-@pytest.mark.compiles
 def test_the_pixels_estimated_by_flats_and_darks_are_wrong_by_what_is_left() -> None:
     """Two linear equations a pixel, solved by plain least squares: noise far below the spread."""
     references = References(flats=16, darks=16)
