@@ -132,10 +132,11 @@ def _normal_matrix(p: Floats, x: Floats, y: Floats, matrix: Floats) -> None:
 @compiled
 def _step(matrix: Floats, right: Floats, damping: float, work: Floats, step: Floats) -> bool:
     """Solve (matrix + damping diagonal) step = right; False where not definite."""
-    work[:] = matrix
     for a in range(_PARAMETERS):
+        for b in range(_PARAMETERS):
+            work[a, b] = matrix[a, b]
         work[a, a] = (1.0 + damping) * matrix[a, a]
-    step[:] = right
+        step[a] = right[a]
     return solve(work, step, _DEPENDENT)
 
 
