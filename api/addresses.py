@@ -82,7 +82,8 @@ def anchor(attribute: str, value: str) -> str:
 
 def twin(path: str, query: str, suffix: str) -> str:
     """Return the address of a page's twin; that of "/" is called answer."""
-    return ("/answer" if path == "/" else path) + suffix + (f"?{query}" if query else "")
+    place = "/answer" if path == "/" else quote(path, safe="/+:,@")
+    return place + suffix + (f"?{query}" if query else "")
 
 
 def for_spreadsheets(path: str, query: str) -> str:
