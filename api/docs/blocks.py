@@ -3,77 +3,56 @@
 On a page Python blocks share one namespace, and all blocks one working directory. What a Python
 block prints stands in the `text` block behind it; a `console` block holds commands (`$ ...`) with
 what each prints; an `sh` block holds commands alone. A block that is not run says why, in a comment
-ahead of it (`<!-- not run: REASON -->`); so do commands of `NOT_RUN`, wherever they stand.
+ahead of it (`<!-- not run: REASON -->`).
 """
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import io
 import re
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from sybil import Document, Example
 from sybil.evaluators.python import PythonEvaluator
 from sybil.parsers.markdown.lexers import RawFencedCodeBlockLexer
+from typer.testing import CliRunner
 
-from api.docs.commands import CommandError, run
+from api.cli.command_line import app
 
-#: How commands begin that no page's test runs, and why.
-NOT_RUN: Mapping[tuple[str, ...], str] = {
-    ("make",): "sets up an environment or measures for minutes; CI runs these targets",
-    ("git", "clone"): "fetches the repository",
-    ("sunatlas", "leaderboard", "--check"): "measures every cell again: hours",
-    ("sunatlas", "rank"): "needs the page's file: the recipes' test runs it in a copy of the tree",
-}
+#: How commands begin that no page's test runs: they set up an environment, measure for hours, or
+#: need the page's file.
+NOT_RUN = ("make ", "git clone ", "sunatlas leaderboard --check", "sunatlas rank ")
+#: Columns of the terminal that pages are written for.
+WIDTH = "88"
+#: Where the pages' service listens.
+SERVED = "http://127.0.0.1:8000"
 
-_BLOCKS = RawFencedCodeBlockLexer(re.compile(r"(?P<language>[a-z]*)(?P<info>[^\n]*)\n"))
-_REASON = re.compile(r"<!-- not run: (?P<reason>[^>]+?) -->\s*\Z")
+_FENCED = RawFencedCodeBlockLexer(re.compile(r"(?P<language>[a-z]*)(?P<info>[^\n]*)\n"))
+_REASON = re.compile(r"<!-- not run: [^>]+ -->\s*\Z")
+_COMMAND = re.compile(r"^\$ (?P<command>(?:.*\\\n)*.*)\n", re.MULTILINE)
+_UNSHOWN = "no text block shows what the block before prints"
 
 
 class BlockError(Exception):
     """A block does not run, or prints something else; the message names page and line."""
 
 
-class Block:
-    """A fenced block.
-
-    Attributes
-    ----------
-    example
-        As Sybil has it.
-    language, info
-        As stated, and what stands behind that; empty where nothing is.
-    body
-        Its lines, without the fence's indent.
-    line
-        Of the opening fence, counted from 1.
-    start, end
-        Of the body in the page's text.
-    reason
-        Why it is not run; empty where it is.
-    """
-
-    def __init__(self, example: Example) -> None:
-        text, lexemes = example.document.text, example.region.lexemes
-        self.example, self.line, self.body = example, example.line, str(example.parsed)
-        self.language, self.info = lexemes["language"], lexemes["info"].strip()
-        self.start = example.start + example.parsed.offset
-        self.end = text.rindex("\n", 0, example.end) + 1
-        found = _REASON.search(text, 0, example.start)
-        self.reason = "" if found is None else found["reason"]
-
-
-def blocks(text: str, page: str = "") -> list[Block]:
-    """Return the fenced blocks of a page, in order; those of Python share a namespace."""
+def blocks(page: str, text: str) -> Iterator[tuple[str, Example, bool]]:
+    """Give the fenced blocks of a page: language with what stands behind it, block, to be run."""
     document = Document(text, page)
     document.namespace["__name__"] = page
-    for region in _BLOCKS(document):
+    for region in _FENCED(document):
         region.parsed = region.lexemes["source"]
         document.add(region)
-    return [Block(example) for example in document]
+    for example in document:
+        word = example.region.lexemes["language"] + example.region.lexemes["info"]
+        yield word, example, _REASON.search(text, 0, example.start) is None
 
 
 def rerun(page: str, text: str, directory: Path) -> str:
@@ -90,87 +69,94 @@ def rerun(page: str, text: str, directory: Path) -> str:
     BlockError
         Where a block fails, or prints what no block behind it shows.
     """
-    found = blocks(text, page)
-    printed: dict[Block, str] = {}
+    new, at, behind = "", 0, 0
+    printed: str | None = None  # by the block of Python just run
     with contextlib.chdir(directory):
-        for block, behind in zip(found, [*found[1:], None], strict=True):
-            where = f"{page}, line {block.line}"
-            if block.reason:
-                continue
-            if block.language == "python" and not block.info:
-                said = _python(block, where)
-                shown = behind is not None and _is_output(text, block, behind)
-                if bool(said) != shown:
-                    what = "prints, and no text block shows it" if said else "prints nothing"
-                    raise BlockError(f"{where}: {what}")
-                if behind is not None and shown:
-                    printed[behind] = said
-            elif block.language in {"console", "sh"}:
-                printed[block] = "".join(_commands(block, where))
-    for block in sorted(printed, key=lambda block: block.start, reverse=True):
-        text = text[: block.start] + printed[block] + text[block.end :]
-    return text
+        for word, example, wanted in blocks(page, text):
+            start = example.start + example.parsed.offset
+            end = start + len(example.parsed)
+            shows = word == "text" and not text[behind : example.start].strip()
+            behind = example.end
+            try:
+                if printed is not None and shows != bool(printed):
+                    raise BlockError(_UNSHOWN if printed else "the block before prints nothing")
+                if printed and shows:
+                    new, at = new + text[at:start] + printed, end
+                printed = None
+                if wanted and word == "python":
+                    printed = _python(example)
+                elif wanted and word == "console":
+                    new, at = new + text[at:start] + _console(example.parsed), end
+                elif wanted and word == "sh":
+                    for command in example.parsed.replace("\\\n", " ").splitlines():
+                        _run(command)
+            except Exception as error:
+                said = f"{page}, line {example.line}: {type(error).__name__}: {error}"
+                raise BlockError(said) from error
+    if printed:
+        raise BlockError(f"{page}: {_UNSHOWN}")
+    return new + text[at:]
 
 
-def _is_output(text: str, block: Block, behind: Block) -> bool:
-    between = text[block.example.end : behind.example.start]
-    return behind.language == "text" and not between.strip()
-
-
-def _python(block: Block, where: str) -> str:
-    """Run a block of Python; return what it prints, without blanks that end a line."""
+def _python(example: Example) -> str:
     said = io.StringIO()
-    try:
-        with contextlib.redirect_stdout(said):
-            PythonEvaluator()(block.example)
-    except Exception as error:
-        raise BlockError(f"{where} fails: {type(error).__name__}: {error}") from error
-    return "".join(f"{line.rstrip()}\n" for line in said.getvalue().splitlines())
+    with contextlib.redirect_stdout(said):
+        PythonEvaluator()(example)
+    return _trimmed(said.getvalue())
 
 
-def _commands(block: Block, where: str) -> Iterator[str]:
-    """Run the commands of a block; give its lines with what each prints now."""
-    shown = block.language == "console"
-    for command, before in _split(block.body, shown=shown):
-        yield f"$ {command}\n" if shown else f"{command}\n"
-        words = shlex.split(command.replace("\\\n", " "), comments=True)
-        if not words:
-            continue
-        if reason_not_to_run(words):
-            yield before
-            continue
-        try:
-            said = run(words)
-        except CommandError as error:
-            raise BlockError(f"{where}: `{command}`: {error}") from error
-        if shown:
-            yield said
+def _console(body: str) -> str:
+    """Run the commands of a block; return its lines with what each prints now."""
+    _, *parts = _COMMAND.split(body)
+    if not parts or not body.startswith("$ "):
+        raise BlockError(f"a console block starts with a command (`$ ...`); got {body[:40]!r}")
+    shown = ""
+    for command, before in zip(parts[::2], parts[1::2], strict=True):
+        said = _run(command.replace("\\\n", " "))
+        shown += f"$ {command}\n{before if said is None else said}"
+    return shown
 
 
-def reason_not_to_run(words: list[str]) -> str:
-    """Return why a command is not run; empty where it is."""
-    plain = [
-        word.removeprefix(".venv/bin/") if word.endswith("sunatlas") else word for word in words
-    ]
-    for start, reason in NOT_RUN.items():
-        if tuple(plain[: len(start)]) == start:
-            return reason
-    return ""
+def _run(command: str) -> str | None:
+    """Run a command in this process; return what it prints, None where it is not run."""
+    plain = command.removeprefix(".venv/bin/")
+    if plain.startswith(NOT_RUN):
+        return None
+    match shlex.split(plain, comments=True):
+        case []:
+            return ""
+        case ["sunatlas", *words]:
+            runner = CliRunner(env={"COLUMNS": WIDTH, "TERMINAL_WIDTH": WIDTH})
+            done = runner.invoke(app, words, prog_name="sunatlas")
+            if done.exit_code:
+                raise BlockError(f"exit code {done.exit_code}: {done.output.strip()}")
+            return _trimmed(done.stdout)
+        case ["curl", *_, address] if address.startswith(SERVED):
+            return _trimmed(asyncio.run(_ask(address)))
+        case ["cat", *names]:
+            return _trimmed("".join(Path(name).read_text("utf-8") for name in names))
+        case ["ls", *names]:
+            places = [Path(name) for name in names or ["."]]
+            return "".join(f"{p.name}\n" for place in places for p in sorted(place.iterdir()))
+    raise BlockError(f"expected sunatlas, cat, ls, or curl to {SERVED}; got {command}")
 
 
-def _split(body: str, *, shown: bool) -> Iterator[tuple[str, str]]:
-    """Give each command of a block, of several lines or one, with what stands behind it."""
-    command, behind = None, ""
-    for line in body.splitlines():
-        if command is not None and command.endswith("\\"):
-            command += f"\n{line}"
-        elif not shown or line.startswith("$ "):
-            if command is not None:
-                yield command, behind
-            command, behind = line.removeprefix("$ ") if shown else line, ""
-        elif command is None:
-            raise BlockError(f"a console block starts with a command (`$ ...`); got {line!r}")
-        else:
-            behind += f"{line}\n"
-    if command is not None:
-        yield command, behind
+def _trimmed(text: str) -> str:
+    return "".join(f"{line.rstrip()}\n" for line in text.strip("\n").splitlines())
+
+
+@cache
+def _service() -> Any:
+    from api.server.app import create_app  # noqa: PLC0415 - seconds, and few pages ask it
+
+    return create_app()
+
+
+async def _ask(address: str) -> str:
+    import httpx  # noqa: PLC0415 - needed to run pages, not to build the guide
+
+    async with httpx.AsyncClient(transport=httpx.ASGITransport(_service())) as client:
+        answer = await client.get(address)
+    if answer.status_code != 200:
+        raise BlockError(f"{answer.status_code}: {answer.text}")
+    return answer.text

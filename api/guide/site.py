@@ -1,7 +1,8 @@
 """Where the guide's pages are, and the site that is made of them.
 
 A site is built once for its sources, kept in the user's cache, and never committed. What builds it
-(Sphinx, MyST, Furo) is the extra `guide` of the distribution.
+(Sphinx, MyST, Furo) is the extra `guide` of the distribution; `api.docs.extension` adds what the
+code knows.
 """
 
 from __future__ import annotations
@@ -13,17 +14,16 @@ import re
 import shutil
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from importlib.resources import files
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from api.guide.atlas import atlas_links
-from api.guide.chapters import ROOT
+from api.addresses import NAVIGATION
 from api.user_cache import user_cache
 from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable, temporary_directory
 
-BUILDERS = ("sphinx", "myst-parser", "furo")
+BUILDERS = ("sphinx", "myst-parser", "furo", "latex2mathml")
 INSTALL = "pip install 'sun-sensor-atlas[guide]'"
 
 #: Sites of so many states of the pages are kept.
@@ -31,10 +31,11 @@ KEPT = 4
 
 _PROJECT = "Sun Sensor Atlas"
 _UNWRITTEN = re.compile(r"error writing file|cannot copy |Failed to copy ")
-_DOCUMENTED = re.compile(r"^\.\. automodule:: (\S+)$", re.MULTILINE)
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _HERE = Path(__file__).resolve().parent
-_CHECKOUT = _HERE.parents[1] / "docs"
+_ROOT = _HERE.parents[1]
+#: Packages whose code and data pages are made of.
+_PACKAGES = ("algorithms", "api", "benchmark", "calibrate", "registry", "survey_data")
 
 
 class GuideError(RuntimeError):
@@ -49,11 +50,11 @@ def source() -> Path:
     GuideError
         Where there is neither.
     """
-    for directory in (_CHECKOUT, Path(str(files("api"))) / "guide" / "source"):
-        if (directory / f"{ROOT}.md").is_file():
+    for directory in (_ROOT / "docs", _HERE / "source"):
+        if (directory / "index.md").is_file():
             return directory
     raise GuideError(
-        f"no pages of the guide: neither {_CHECKOUT} nor the installed package has any"
+        f"no pages of the guide: neither {_ROOT / 'docs'} nor the installed package has any"
     )
 
 
@@ -69,29 +70,17 @@ def missing_builders() -> tuple[str, ...]:
     return tuple(missing)
 
 
-def documented_modules() -> list[str]:
-    """Name the modules whose docstrings are on the page of the Python interface."""
-    page = source() / "guide" / "python.md"
-    return _DOCUMENTED.findall(page.read_text("utf-8")) if page.is_file() else []
-
-
-def _file_of(module: str) -> Path:
-    path = _HERE.parents[1].joinpath(*module.split("."))
-    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-
-
 @cache
 def digest() -> str:
-    """Return what the site depends on as a digest: pages, this code, and what builds it."""
+    """Return what the site depends on as a digest: pages, code, record, and what builds it."""
     summed = hashlib.blake2b(digest_size=12)
-    for root in (source(), _HERE, _HERE.parent / "mathml.py"):
-        for path in sorted(root.rglob("*")) or [root]:
-            if path.is_file() and path.suffix in {".md", ".svg", ".png", ".py", ".css"}:
-                summed.update(f"\0{path.relative_to(root).as_posix()}\0".encode())
-                summed.update(path.read_bytes())
-    for module in documented_modules():
-        summed.update(f"\0{module}\0".encode() + _file_of(module).read_bytes())
-    for name in (*BUILDERS, "latex2mathml"):
+    pages = sorted(source().rglob("*"))
+    code = (sorted((_ROOT / name).rglob("*.py")) for name in _PACKAGES)
+    sums = (sorted((_ROOT / name).rglob("checksums-sha256.txt")) for name in _PACKAGES)
+    for path in chain(pages, *code, *sums, (_HERE / "static" / "guide.css",)):
+        if path.is_file():
+            summed.update(f"\0{path.name}\0".encode() + path.read_bytes())
+    for name in BUILDERS:
         summed.update(f"{name} {version(name)}\n".encode())
     return summed.hexdigest()
 
@@ -157,20 +146,30 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     return warnings
 
 
+def keep(progress: ProgressCallback = silent) -> list[str]:
+    """Build the site where `cached_site` says, drop the oldest ones; warnings as `build`."""
+    place = cached_site()
+    if place is None:
+        raise GuideError(f"building the guide needs {', '.join(missing_builders())}: {INSTALL}")
+    if place.is_dir():
+        return []
+    warnings = build(place, progress)
+    # Checkouts share a cache, and each has its own pages.
+    sites = [path for path in place.parent.iterdir() if not path.name.startswith(".")]
+    for old in sorted(sites, key=lambda path: path.stat().st_mtime)[:-KEPT]:
+        shutil.rmtree(old, ignore_errors=True)
+    return warnings
+
+
 def _count(sphinx: Any, progress: ProgressCallback) -> None:
     """Let Sphinx tell of each page that it reads and writes."""
-    done, total = 0, 0
+    seen: list[str] = []
 
-    def begin(_app: Any, _env: Any, docnames: list[str]) -> None:
-        nonlocal total
-        total = 2 * len(docnames)
+    def step(_app: Any, page: str, *_: Any) -> None:
+        total = 2 * len(sphinx.env.found_docs)
+        seen.append(page)
+        progress(min(len(seen), total), total, page)
 
-    def step(_app: Any, docname: str, *_: Any) -> None:
-        nonlocal done
-        done = min(done + 1, total)
-        progress(done, total, docname)
-
-    sphinx.connect("env-before-read-docs", begin)
     sphinx.connect("source-read", step)
     sphinx.connect("html-page-context", step)
 
@@ -188,26 +187,10 @@ def _require_ours(out: Path) -> None:
         )
 
 
-def keep(progress: ProgressCallback = silent) -> list[str]:
-    """Build the site where `cached_site` says, drop the oldest ones.
-
-    Return the warnings as `build`.
-    """
-    place = cached_site()
-    if place is None:
-        raise GuideError(f"building the guide needs {', '.join(missing_builders())}: {INSTALL}")
-    if place.is_dir():
-        return []
-    warnings = build(place, progress)
-    _drop_oldest(place)
-    return warnings
-
-
-def _drop_oldest(place: Path) -> None:
-    """Delete all but the newest sites: checkouts share a cache, and each has its own pages."""
-    sites = [path for path in place.parent.iterdir() if not path.name.startswith(".")]
-    for old in sorted(sites, key=lambda path: path.stat().st_mtime)[:-KEPT]:
-        shutil.rmtree(old, ignore_errors=True)
+def _atlas_links() -> str:
+    """Return links to the parts of the atlas, as HTML for the head of every page."""
+    linked = [at for at in NAVIGATION if at[0] != "/guide"] + [("/docs", "API reference")]
+    return f"{_PROJECT}: " + " · ".join(f'<a href="{at}">{name}</a>' for at, name in linked)
 
 
 def _settings() -> dict[str, Any]:
@@ -217,7 +200,7 @@ def _settings() -> dict[str, Any]:
         "html_title": _PROJECT,
         "extensions": [
             *("myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"),
-            "api.guide.extension",
+            "api.docs.extension",
         ],
         # Docstrings of the Python interface: names in backquotes are code, types are no links.
         "default_role": "code",
@@ -226,7 +209,6 @@ def _settings() -> dict[str, Any]:
         "autodoc_preserve_defaults": True,
         "napoleon_google_docstring": False,
         "nitpick_ignore_regex": [("py:.*", ".*")],
-        "root_doc": ROOT,
         "source_suffix": {".md": "markdown"},
         "myst_enable_extensions": ["dollarmath"],
         "myst_heading_anchors": 6,
@@ -234,7 +216,7 @@ def _settings() -> dict[str, Any]:
         "smartquotes": False,
         "html_math_renderer": "mathml",
         "html_theme": "furo",
-        "html_theme_options": {"announcement": atlas_links()},
+        "html_theme_options": {"announcement": _atlas_links()},
         "html_static_path": [os.fspath(_HERE / "static")],
         "html_css_files": ["guide.css"],
         "html_favicon": os.fspath(_HERE.parent / "static" / "icon.svg"),

@@ -1,0 +1,168 @@
+"""Parts of the guide's pages that are made when the guide is built: what the code knows.
+
+A page has `<!-- built: NAME -->` where a part belongs. Pages of the service that say the same are
+linked instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+from typer.testing import CliRunner
+
+from api.addresses import algorithm_page
+from api.cli.command_line import COMMANDS, app, load
+from api.deposit.deposit_tables import measured_tables
+from api.docs.front import findings
+from api.docs.knowledge import knowledge
+from api.metadata import errors
+from api.pages.methods import docstring_parts
+from benchmark.assessment.definitions import DEFINITIONS
+from benchmark.error_budget.record import RECORD as ERROR_BUDGET
+from benchmark.error_budget.sentences import verdict
+from benchmark.leaderboard.headlines import Headline, headlines
+from benchmark.learning_curves.record import published_curves
+from benchmark.results.store import PUBLISHED
+from survey_data.descriptor import descriptor
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Write a table in Markdown; cells are one line each."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join(f"| {' | '.join(map(_cell, line))} |" for line in lines)
+
+
+def command_line() -> str:
+    """Return the help of `sunatlas` and of every command below it."""
+    shown = [["--help"]]
+    for name in COMMANDS:
+        shown.append([name, "--help"])
+        shown += [[name, below, "--help"] for below in getattr(load(name), "commands", {})]
+    runner = CliRunner(env={"COLUMNS": "88", "TERMINAL_WIDTH": "88"})
+    parts = []
+    for words in shown:
+        text = runner.invoke(app, words, prog_name="sunatlas").stdout.strip()
+        title = " ".join(["sunatlas", *words[:-1]])
+        parts.append(f"### {title}\n\n```text\n{text}\n```")
+    return "\n\n".join(parts)
+
+
+def tables_of_facts() -> str:
+    """Describe the survey's tables, from their descriptor."""
+    return "\n\n".join(_described(**_of(one)) for one in descriptor()["resources"])
+
+
+def tables_of_measurements() -> str:
+    """Describe the measured tables, as the deposit has them."""
+    tables = [
+        _described(one.name, f"{one.name}.csv", one.title, one.description, one.schema)
+        for one in measured_tables(PUBLISHED)
+    ]
+    samples = (
+        _described(name, path, title, "Parquet.", schema)
+        for name, (path, title, schema) in errors.KINDS.items()
+    )
+    return "\n\n".join((*tables, *samples))
+
+
+def models() -> str:
+    """List the calibration models by category, each with the equations of its docstring."""
+    known = knowledge()
+    listed: dict[str, list[str]] = {}
+    for one in known.catalogue.implementations("model"):
+        if " + " in one.name:  # a chain: its parts are listed
+            continue
+        (said,) = docstring_parts(known.catalogue.model(one.name))
+        equations = "".join(f"<p>{text}</p>" for text in said.equations)
+        link = f'<a href="{algorithm_page(one.name)}">{one.title}</a>'
+        listed.setdefault(one.category, []).append(
+            f"<p><strong>{link}</strong> (<code>{one.name}</code>): {one.summary}</p>{equations}"
+        )
+    return "\n\n".join(f"### {name}\n\n" + "\n\n".join(found) for name, found in listed.items())
+
+
+def error_sources() -> str:
+    """Say of every best pipeline that is not near its bound what limits it."""
+    judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
+    return "\n".join(f"- {one.sentence}" for one in judged if not one.is_near_bound)
+
+
+def published_figures() -> str:
+    """Set every accuracy and precision that a study publishes beside ours, the worst first."""
+    known = knowledge()
+    every = headlines(known.measurements.score_of, known.facts.studies.values(), known.resolutions)
+    header = ("study", "quantity", "published, deg", "ours, deg", "ratio", "pipeline", "difference")
+    return table(header, map(_headline, every))
+
+
+def poses_needed() -> str:
+    """List the first leader of each data set: poses it needs, poses there are, its floor."""
+    rows = pd.DataFrame(published_curves()).drop_duplicates("dataset")
+    rows = rows.assign(pipeline=rows["extractor"] + " + " + rows["model"])
+    shown = ["dataset", "pipeline", "needed_poses", "needed_low", "needed_high", "poses"]
+    return _frame(rows[[*shown, "floor_error_deg", "over_bound"]])
+
+
+def definitions() -> str:
+    """List every property of the assessment with its experiment and limits."""
+    rows = [
+        (one.name, one.measure, one.limits() or "not judged", one.why)
+        for one in DEFINITIONS.values()
+    ]
+    header = ("property", "measured as (or why not)", "score", "why it is not judged elsewhere")
+    return table(header, rows)
+
+
+#: What makes each part, by its name.
+PARTS: Mapping[str, Callable[[], str]] = {
+    "findings": findings,
+    "command-line": command_line,
+    "facts": tables_of_facts,
+    "measurements": tables_of_measurements,
+    "models": models,
+    "error-sources": error_sources,
+    "published-figures": published_figures,
+    "poses-needed": poses_needed,
+    "definitions": definitions,
+}
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def _frame(frame: pd.DataFrame) -> str:
+    """Write a data frame: words of its columns, numbers of three digits, a dash for none."""
+    cells = frame.astype(object).where(frame.notna(), "–")
+    rows = ([f"{c:.3g}" if isinstance(c, float) else str(c) for c in row] for row in cells.to_numpy())
+    return table([name.replace("_", " ") for name in frame.columns], rows)
+
+
+def _of(resource: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: resource[name] for name in ("name", "path", "title", "description", "schema")}
+
+
+def _described(
+    name: str, path: str, title: str, description: str, schema: Mapping[str, Any]
+) -> str:
+    """Describe a table and its columns."""
+    rows = [
+        (f"`{f['name']}`", f.get("type", "any"), f.get("description", "")) for f in schema["fields"]
+    ]
+    keys = schema.get("primaryKey", ())
+    key = f" Key: {', '.join([keys] if isinstance(keys, str) else keys)}." if keys else ""
+    columns = table(("column", "type", "holds"), rows)
+    return f"### {name}\n\n{title}: `{path}`. {description}{key}\n\n{columns}"
+
+
+def _headline(one: Headline) -> tuple[str, ...]:
+    published = (one.study, f"{one.published.quantity}, {one.published.statistic.name}")
+    stated = f"{one.published.value_deg:.2g}"
+    if one.place is None or one.our_deg is None or one.ratio is None:
+        return (*published, stated, "not measured", "–", "–", one.difference)
+    dataset, condition, extractor, model = one.place
+    place = f"{extractor} + {model} on `{dataset}`, {condition}"
+    ours = (f"{one.our_deg:.2g} ({one.our_statistic})", f"{one.ratio:.2g}")
+    return (*published, stated, *ours, place, one.difference)
