@@ -14,17 +14,14 @@ from typer.testing import CliRunner
 
 from api.addresses import algorithm_page
 from api.cli.command_line import COMMANDS, app, load
-from api.deposit.deposit_tables import measured_tables
-from api.docs.front import findings
 from api.docs.knowledge import knowledge
-from api.metadata import errors
+from api.guide.site import source
 from api.pages.methods import docstring_parts
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import verdict
 from benchmark.leaderboard.headlines import Headline, headlines
 from benchmark.learning_curves.record import published_curves
-from benchmark.results.store import PUBLISHED
 from survey_data.descriptor import descriptor
 
 
@@ -32,6 +29,12 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Write a table in Markdown; cells are one line each."""
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join(f"| {' | '.join(map(_cell, line))} |" for line in lines)
+
+
+def findings() -> str:
+    """Return the findings of the README, which the wheel has beside the pages."""
+    readme = (source().parent / "README.md").read_text("utf-8")
+    return readme.partition("<!-- generated: findings -->")[2].partition("<!-- end:")[0]
 
 
 def command_line() -> str:
@@ -51,20 +54,7 @@ def command_line() -> str:
 
 def tables_of_facts() -> str:
     """Describe the survey's tables, from their descriptor."""
-    return "\n\n".join(_described(**_of(one)) for one in descriptor()["resources"])
-
-
-def tables_of_measurements() -> str:
-    """Describe the measured tables, as the deposit has them."""
-    tables = [
-        _described(one.name, f"{one.name}.csv", one.title, one.description, one.schema)
-        for one in measured_tables(PUBLISHED)
-    ]
-    samples = (
-        _described(name, path, title, "Parquet.", schema)
-        for name, (path, title, schema) in errors.KINDS.items()
-    )
-    return "\n\n".join((*tables, *samples))
+    return "\n\n".join(map(_described, descriptor()["resources"]))
 
 
 def models() -> str:
@@ -120,7 +110,6 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "findings": findings,
     "command-line": command_line,
     "facts": tables_of_facts,
-    "measurements": tables_of_measurements,
     "models": models,
     "error-sources": error_sources,
     "published-figures": published_figures,
@@ -140,21 +129,17 @@ def _frame(frame: pd.DataFrame) -> str:
     return table([name.replace("_", " ") for name in frame.columns], rows)
 
 
-def _of(resource: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: resource[name] for name in ("name", "path", "title", "description", "schema")}
-
-
-def _described(
-    name: str, path: str, title: str, description: str, schema: Mapping[str, Any]
-) -> str:
+def _described(resource: Mapping[str, Any]) -> str:
     """Describe a table and its columns."""
-    rows = [
-        (f"`{f['name']}`", f.get("type", "any"), f.get("description", "")) for f in schema["fields"]
+    schema = resource["schema"]
+    lines = [
+        f"- `{one['name']}` ({one.get('type', 'any')}): {one.get('description', '')}"
+        for one in schema["fields"]
     ]
     keys = schema.get("primaryKey", ())
     key = f" Key: {', '.join([keys] if isinstance(keys, str) else keys)}." if keys else ""
-    columns = table(("column", "type", "holds"), rows)
-    return f"### {name}\n\n{title}: `{path}`. {description}{key}\n\n{columns}"
+    said = f"{resource['title']}: `{resource['path']}`. {resource['description']}{key}"
+    return "\n\n".join((f"### {resource['name']}", said, "\n".join(lines)))
 
 
 def _headline(one: Headline) -> tuple[str, ...]:
