@@ -125,7 +125,9 @@ def _cell(text: str) -> str:
 def _frame(frame: pd.DataFrame) -> str:
     """Write a data frame: words of its columns, numbers of three digits, a dash for none."""
     cells = frame.astype(object).where(frame.notna(), "–")
-    rows = ([f"{c:.3g}" if isinstance(c, float) else str(c) for c in row] for row in cells.to_numpy())
+    rows = (
+        [f"{c:.3g}" if isinstance(c, float) else str(c) for c in row] for row in cells.to_numpy()
+    )
     return table([name.replace("_", " ") for name in frame.columns], rows)
 
 

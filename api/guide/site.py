@@ -77,7 +77,9 @@ def digest() -> str:
     pages = sorted(source().rglob("*"))
     code = (sorted((_ROOT / name).rglob("*.py")) for name in _PACKAGES)
     sums = (sorted((_ROOT / name).rglob("checksums-sha256.txt")) for name in _PACKAGES)
-    for path in chain(pages, *code, *sums, (source().parent / "README.md", _HERE / "static" / "guide.css")):
+    for path in chain(
+        pages, *code, *sums, (source().parent / "README.md", _HERE / "static" / "guide.css")
+    ):
         if path.is_file():
             summed.update(f"\0{path.name}\0".encode() + path.read_bytes())
     for name in BUILDERS:

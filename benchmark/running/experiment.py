@@ -121,7 +121,7 @@ class RecordedExperiment(Experiment[C]):
         return "" if row["key"] == key else "of other code or data"
 
     def pictures(self) -> Mapping[str, Callable[[], str]]:
-        """Return what draws the record as SVG, by the path of the file in `docs`."""
+        """Return what draws the record as SVG, by the name of the file."""
         return {}
 
     def rows(self) -> list[Row]:

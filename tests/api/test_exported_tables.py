@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
+from urllib.parse import quote, urlencode
 
 import pytest
 from fastapi import APIRouter, FastAPI
@@ -13,7 +15,6 @@ from typer.testing import CliRunner
 
 from api.cli import command_line
 from api.cli.command_line import COMMANDS, app
-from api.docs.examples import target
 from api.server import handlers
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import TableOnly
@@ -39,11 +40,21 @@ WHOLE = (
 )
 
 
+def target(path: str, operation: Mapping[str, Any]) -> str:
+    """Path with query of an operation's example."""
+    given = [one for one in operation.get("parameters", ()) if "example" in one]
+    for one in given:
+        if one["in"] == "path":
+            path = path.replace(f"{{{one['name']}}}", quote(str(one["example"]), safe=""))
+    query = {one["name"]: one["example"] for one in given if one["in"] == "query"}
+    return path + ("?" + urlencode(query, doseq=True) if query else "")
+
+
 def tables(atlas: Client) -> list[str]:
     """Addresses of every table: each endpoint's example, whole lists, and pages."""
     paths = atlas.get("/openapi.json").json()["paths"]
     found = [
-        target(path, methods["get"])[0]
+        target(path, methods["get"])
         for path, methods in paths.items()
         if "text/csv"
         in methods.get("get", {}).get("responses", {}).get("200", {}).get("content", {})

@@ -1,59 +1,94 @@
-"""The docs: generated parts are what the code says now, and cannot be lost unnoticed."""
+"""Generated parts in git are what the code says now; those of the built guide have what they should."""
 
-import shutil
+from __future__ import annotations
 
+import csv
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from api.docs import documentation
-from api.docs.documentation import PAGES, DocumentationError, regenerate, renew_parts
+from api.docs import built_parts, documentation, front
+from api.docs.documentation import DocumentationError, regenerate, renew_parts
+from benchmark.assessment.definitions import DEFINITIONS
+from survey_data.descriptor import DATA_DIRECTORY
 
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
 
 @pytest.mark.slow
-def test_the_committed_docs_are_current():
+def test_the_committed_docs_are_current() -> None:
     assert regenerate(write=False) == [], "run `make docs`"
 
 
-def test_what_is_altered_is_noticed_and_renewed(tmp_path, monkeypatch, capsys):
-    docs = tmp_path / "docs"
-    shutil.copytree(documentation.DIRECTORY, docs)
-    pages = {"survey.md": PAGES["survey.md"]}
-    monkeypatch.setattr(documentation, "every_page", lambda _: pages)
-    monkeypatch.setattr(documentation, "every_picture", lambda: {"made.svg": lambda: "<svg/>"})
-    monkeypatch.setattr(documentation, "RUN", ("guide/scores.md",))
-    monkeypatch.setattr(documentation.regenerate, "__defaults__", (docs,))
-    page = docs / "survey.md"
-    good = page.read_text("utf-8")
-    page.write_text(good.replace("129 studies", "130 studies"), "utf-8")
-    run = docs / "guide" / "scores.md"
-    true = run.read_text("utf-8")
-    run.write_text(true.replace("[0.003 0.   ]", "[0.004 0.   ]"), "utf-8")
+def test_what_is_altered_is_noticed_and_renewed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(documentation, "PAGES", {"page.md": {"one": lambda: "new"}})
+    monkeypatch.setattr(documentation, "WHOLE", {"made.svg": lambda: "<svg/>"})
+    monkeypatch.setattr(documentation, "RUN", ("run.md",))
+    monkeypatch.setattr(regenerate, "__defaults__", (tmp_path,))
+    (tmp_path / "page.md").write_text(PAGE)
+    (tmp_path / "run.md").write_text("```python\nprint(2)\n```\n\n```text\n1\n```\n")
     assert documentation.main(["--check"]) == 1
     said = capsys.readouterr().err
-    assert "docs/survey.md is behind" in said
-    assert "docs/made.svg is behind" in said
-    assert "docs/guide/scores.md is behind" in said
-    assert "130 studies" in page.read_text("utf-8")
-    assert not (docs / "made.svg").exists()
+    for name in ("page.md", "made.svg", "run.md"):
+        assert f"{name} is behind" in said
+    assert (tmp_path / "page.md").read_text() == PAGE
     assert documentation.main([]) == 0
-    assert page.read_text("utf-8") == good
-    assert run.read_text("utf-8") == true != ""
-    assert (docs / "made.svg").read_text("utf-8") == "<svg/>"
+    assert "\nnew\n" in (tmp_path / "page.md").read_text()
+    assert "text\n2\n" in (tmp_path / "run.md").read_text()
+    assert documentation.main(["--check"]) == 0
 
 
-def test_prose_stays_and_the_part_is_replaced():
-    new = renew_parts("page.md", PAGE, {"one": lambda: "new\n"})
-    assert new == "prose\n<!-- generated: one -->\n\nnew\n\n<!-- end: one -->\nmore prose\n"
-    assert renew_parts("page.md", new, {"one": lambda: "new"}) == new
-
-
-@pytest.mark.parametrize("parts", [("two",), ("one", "two"), ()])
-def test_a_part_that_is_missing_or_unknown_is_named(parts):
+@pytest.mark.parametrize(
+    ("text", "parts"), [(PAGE, ("two",)), (PAGE, ("one", "two")), (PAGE, ()), (PAGE * 2, ("one",))]
+)
+def test_a_part_that_is_missing_unknown_or_there_twice_is_named(
+    text: str, parts: tuple[str, ...]
+) -> None:
     with pytest.raises(DocumentationError, match=r"page\.md: expected"):
-        renew_parts("page.md", PAGE, {name: lambda: "" for name in parts})
+        renew_parts("page.md", text, {name: lambda: "" for name in parts})
 
 
-def test_a_part_that_stands_twice_is_refused():
-    with pytest.raises(DocumentationError, match="found one, one"):
-        renew_parts("page.md", PAGE + PAGE, {"one": lambda: ""})
+def test_built_sensors_stand_with_their_own_detector_and_mask() -> None:
+    """Independent of the figure: rows of the hardware table, read as text."""
+    with (DATA_DIRECTORY / "hardware.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["accuracy_deg"]]
+    seen = [row for row in rows if row["basis"] == "page"]
+    found = front.built_sensors()
+    assert sum(map(len, found.values())) == len(seen)
+    for detector, mask in found:
+        beside = [row for row in seen if (row["detector"], row["mask"]) == (detector, mask)]
+        assert len(found[detector, mask]) == len(beside)
+    assert ("CCD", "Single-Ap.") not in found, "TU Delft's and TNO's are CMOS chips"
+
+
+def test_every_built_sensor_below_its_bound_is_drawn_open() -> None:
+    bounds = {(row["detector"], row["mask"]): row["bound_deg"] for row in front._architectures()}
+    below = [
+        error
+        for place, errors in front.built_sensors().items()
+        for error in errors
+        if error < bounds.get(place, 0.0)
+    ]
+    (axes,) = front.figure().axes
+    drawn = [
+        float(error)
+        for line in axes.lines
+        if (line.get_marker(), line.get_fillstyle()) == ("^", "none")
+        for error in np.atleast_1d(line.get_xdata())
+    ]
+    assert sorted(drawn) == sorted(below)
+    assert "below the bound" in axes.get_xlabel()
+
+
+def test_every_model_and_every_definition_stands_in_the_built_guide() -> None:
+    listed = built_parts.models()
+    for model in built_parts.knowledge().catalogue.implementations("model"):
+        for part in model.name.split(" + ")[-1:]:
+            assert f"(<code>{part}</code>)" in listed, model.name
+    definitions = built_parts.definitions()
+    for definition in DEFINITIONS.values():
+        assert definition.name in definitions
+        assert definition.limits() in definitions

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from fastapi import FastAPI
 
-from api.docs.documentation import every_picture
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
@@ -88,7 +87,6 @@ def test_one_file_is_a_whole_experiment(
     assert main([*command, "--check"]) == 0
     assert main([*command, "--again", "2"]) == 0
     assert '"cube":27' in (record / "cubes.json").read_text()
-    assert "cubes.svg" in every_picture()
     client = client_of(create_app(Knowledge(Measurements(record))))
     listed = client.get("/experiments.json").json()["items"]
     assert {"name": "cubes", "title": "Cubes of numbers"}.items() <= listed[-1].items()
