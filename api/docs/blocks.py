@@ -78,9 +78,9 @@ def rerun(page: str, text: str, directory: Path) -> str:
             shows = word == "text" and not text[behind : example.start].strip()
             behind = example.end
             try:
-                if printed is not None and shows != bool(printed):
-                    raise BlockError(_UNSHOWN if printed else "the block before prints nothing")
-                if printed and shows:
+                if printed is not None:
+                    _require(printed, shows=shows)
+                if printed:
                     new, at = new + text[at:start] + printed, end
                 printed = None
                 if wanted and word == "python":
@@ -96,6 +96,12 @@ def rerun(page: str, text: str, directory: Path) -> str:
     if printed:
         raise BlockError(f"{page}: {_UNSHOWN}")
     return new + text[at:]
+
+
+def _require(printed: str, *, shows: bool) -> None:
+    """Refuse what Python prints and no block shows, and a block that shows what is not printed."""
+    if shows != bool(printed):
+        raise BlockError(_UNSHOWN if printed else "the block before prints nothing")
 
 
 def _python(example: Example) -> str:

@@ -1,8 +1,8 @@
 """Extension of Sphinx: what makes docs/ the site at /guide, which fetches nothing.
 
-Parts of pages that the code knows are made when the site is built (`<!-- built: NAME -->`), equations
-become MathML, scripts that the theme writes into pages become files (the service allows no others),
-and data sets, claims, studies and methods that a page names lead to their pages in the atlas.
+Parts of pages that the code knows are made when the site is built (`<!-- built: NAME -->`),
+equations become MathML, scripts that the theme writes into pages become files (the service allows
+no others), and data sets, claims, studies and methods that a page names lead to their pages.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Generated parts in git are what the code says now; those of the built guide have what they should."""
+"""Generated parts in git are what the code says now; those of the guide are whole."""
 
 from __future__ import annotations
 

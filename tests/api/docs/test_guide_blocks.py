@@ -78,7 +78,7 @@ def test_a_command_shows_what_it_prints_and_sh_shows_nothing(tmp_path: Path) -> 
         (fenced("console", "ls"), "starts with a command"),
         (fenced("sh", "sunatlas no-such-command"), "exit code"),
         (fenced("sh", "curl 'http://127.0.0.1:8000/v1/nothing'"), "404"),
-        (fenced("sh", "curl 'https://example.org/'"), "expected an address at"),
+        (fenced("sh", "curl 'https://example.org/'"), "or curl to http"),
     ],
 )
 def test_what_fails_is_named_with_its_page_and_line(
