@@ -106,7 +106,7 @@ leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and
 	$(BIN)/python -m benchmark.experiments --workers $(WORKERS)
 	$(BIN)/python -m api.previews --publish
 
-docs: $(DEVELOPING) ## regenerate the generated parts of docs/
+docs: $(DEVELOPING) ## renew the README's numbers and what blocks of docs/ print
 	$(BIN)/python -m api.docs.documentation
 
 # `make lock UPGRADE=--upgrade` takes the newest versions; without it, pins that still fit stay.

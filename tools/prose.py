@@ -27,8 +27,6 @@ from api.glossary import words
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "docs/**/*.md")
 TEMPLATES = "api/pages/templates/**/*.html"
-#: Definitions, tables and names, quoted as the code and the data package have them.
-QUOTED = ("docs/assessment.md", "docs/algorithms.md", "docs/guide/data-dictionary.md")
 #: Checks that take terms of this field, names of studies or typewriter signs for faults.
 _OFF = (
     *("annotations", "typography", "dates_times", "restricted", "social_awareness", "spelling"),
@@ -46,10 +44,7 @@ def texts() -> Iterator[tuple[str, str]]:
     """Give each text with its place: a file with a line, a command or an operation."""
     for path in sorted({path for pattern in DOCUMENTS for path in ROOT.glob(pattern)}):
         where = path.relative_to(ROOT).as_posix()
-        if where not in QUOTED:
-            yield from (
-                (f"{where}:{line}", text) for line, text in markdown(path.read_text("utf-8"))
-            )
+        yield from ((f"{where}:{line}", text) for line, text in markdown(path.read_text("utf-8")))
     for path in sorted(ROOT.glob(TEMPLATES)):
         where = path.relative_to(ROOT).as_posix()
         yield from ((where, line) for line in template(path.read_text("utf-8")).splitlines())

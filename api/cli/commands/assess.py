@@ -36,7 +36,7 @@ def assess(
     19 methods and 21 properties, scored 2 (yes), 1 (partly) or 0 (no). A cell shows the survey's
     score, a mark and the measured score: = agrees, ~ differs by one, x differs by two. A dot means
     that the measurement cannot contradict the survey, a dash that it is missing. Values are from
-    the published results; definitions are in docs/assessment.md. CSV has a row per method and
+    the published results; /v1/assessment has the definitions. CSV has a row per method and
     property.
     """
     answer = ask(assessment, asked)

@@ -43,8 +43,8 @@ def claims(
     Each claim was tested on at least five sensor units or seeds. Reproduced: every criterion holds
     with 95 % confidence. Partly: some hold. Refuted: none holds, and the trial is the case of the
     survey's sentence. Not reproduced here: none holds, on another case. Not testable: the tests
-    cannot decide. With an ID, its criteria and results are shown; JSON has every trial. Methods
-    and plots are in docs/claims.md.
+    cannot decide. With an ID, its criteria and results are shown; JSON has every trial. The
+    page /claims/ID has its plots, docs/claims.md the method.
     """
     if claim is not None:
         if asked:

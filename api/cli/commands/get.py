@@ -34,7 +34,7 @@ def get(
 ) -> None:
     """Answer an address of the HTTP API without a server.
 
-    JSON and CSV are byte for byte those of the service; docs/http.md lists the addresses. Useful
+    JSON and CSV are byte for byte those of the service; /docs of the service lists them. Useful
     for addresses without a command: /v1/taxonomy, /v1/algorithms, /v1/flows/error, /v1/sweeps,
     /v1/search. The JSON of a long list has the address of its next page.
     """

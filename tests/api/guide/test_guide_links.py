@@ -58,7 +58,12 @@ def test_links_are_found_and_a_broken_one_of_each_kind_is_named() -> None:
     page = ROOT / "docs" / "index.md"
     assert flaw(page, "guide/scores.md#the-bound") == flaw(page, "https://example.org/a") == ""
     assert flaw(page, "guide/scores.md#no-such") == "no heading #no-such"
-    for target in ("guide/missing.md", "../../outside.md", "htp://example.org", "https://localhost"):
+    for target in (
+        "guide/missing.md",
+        "../../outside.md",
+        "htp://example.org",
+        "https://localhost",
+    ):
         assert flaw(page, target).startswith("no "), target
 
 
