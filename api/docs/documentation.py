@@ -89,7 +89,8 @@ def regenerate(root: Path = ROOT, *, write: bool = True) -> list[str]:
     write : write those that were behind
     """
     made: dict[str, Make] = {page: partial(_renewed, page, root) for page in PAGES}
-    made |= {page: partial(_rerun, page, root) for page in RUN} | WHOLE
+    made |= {page: partial(_rerun, page, root) for page in RUN}
+    made |= WHOLE
     behind = {}
     with console_progress("documenting") as report:
         for done, (name, make) in enumerate(made.items()):

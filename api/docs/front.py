@@ -97,7 +97,7 @@ def figure() -> Figure:
 
     def mark(kind: str, errors: Sequence[float], height: int, fill: str = "") -> None:
         colour, marker, usual, size, _ = _MARKS[kind]
-        style = {"color": colour, "fillstyle": fill or usual, "markersize": size}
+        style: dict[str, Any] = {"color": colour, "fillstyle": fill or usual, "markersize": size}
         axes.plot(errors, [height] * len(errors), marker, **style)
 
     for height, row in enumerate(rows):
