@@ -12,6 +12,7 @@ import numpy as np
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 from algorithms.kernels.cholesky import factor, forward
+from algorithms.kernels.copies import copy_matrix, copy_row
 
 
 @compiled
@@ -80,7 +81,7 @@ def _whiten(root: Floats, innovation: Floats, white: Floats) -> tuple[float, flo
     `root` is its covariance, which its root replaces.
     """
     _factor(root)
-    white[:] = innovation
+    copy_row(innovation, white)
     forward(root, white)
     squares, determinant = 0.0, 0.0
     for i in range(white.size):
@@ -96,7 +97,7 @@ def innovation_likelihood(spread: Floats, innovation: Floats) -> tuple[Floats, F
     squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
     root, white = np.zeros((m, m)), np.empty(m)
     for b in range(count):
-        root[:] = spread[b]
+        copy_matrix(spread[b], root)
         squares, log_likelihood = _whiten(root, innovation[b], white)
         if math.isfinite(squares):
             squared[b], likelihood[b] = squares, log_likelihood
@@ -236,7 +237,7 @@ def update_by_points(  # noqa: C901, PLR0917 - one pass, nothing allocated betwe
             for j in range(m):
                 root[i, j] += spread[b, i, j]
         squared[b], likelihood[b] = _whiten(root, innovation[b], white)
-        half[:] = crossed[b]
+        copy_matrix(crossed[b], half)
         for i in range(n):  # C L'^-1, whose square is K S K'
             forward(root, half[i])
             for j in range(m):
@@ -282,7 +283,7 @@ def sigma_errors(covariance: Floats, scale: float) -> Floats:
     out = np.zeros((count, 2 * n + 1, n))
     root = np.zeros((n, n))
     for b in range(count):
-        root[:] = covariance[b]
+        copy_matrix(covariance[b], root)
         _factor(root)
         for p in range(n):
             for i in range(p, n):

@@ -12,6 +12,7 @@ import numpy as np
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 from algorithms.filtering.algebra_kernel import innovation_covariance
+from algorithms.kernels.copies import copy_matrix
 
 
 @compiled
@@ -39,7 +40,7 @@ def adapt(  # noqa: PLR0917 - one pass
     high = np.empty(m)
     for b in range(count):
         if not (np.isfinite(residual[b]).all() and math.isfinite(squared[b])):
-            out[b] = noise[b]
+            copy_matrix(noise[b], out[b])
             continue
         for i in range(m):
             for j in range(m):

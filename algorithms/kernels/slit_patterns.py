@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 
 Counts = NDArray[np.int64]
 
@@ -30,7 +31,7 @@ def _least_scores(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if groups[i] == group:
             start = places[i] - low
             if first:
-                out[:] = row[start : start + out.size]
+                copy_row(row[start : start + out.size], out)
                 first = False
             else:
                 for n in range(out.size):

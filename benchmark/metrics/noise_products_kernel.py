@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_matrix, copy_row
 
 #: Elements at a time: what is summed of them stays in the processor's nearest memory.
 _WIDTH = 128
@@ -46,6 +47,12 @@ def _add_to_columns(sums: Floats, weighted: Floats, weight: Floats) -> None:
     last = sums[weighted.shape[0]]
     for m in range(last.shape[0]):
         last[m] += weight[m]
+
+
+@compiled
+def _weigh(weight: Floats, change: Floats, out: Floats) -> None:
+    for m in range(out.shape[0]):
+        out[m] = weight[m] * change[m]
 
 
 @compiled
@@ -97,12 +104,12 @@ def products(
             stop = min(start + width, size)
             # nothing beyond the last element
             weight[stop - start :] = 0.0
-            weight[: stop - start] = weights[n, start:stop]
+            copy_row(weights[n, start:stop], weight[: stop - start])
             for i in range(kinds):
                 signal, around, one = signals[i, n, start:stop], mean[n, start:stop], change[i]
                 for m in range(stop - start):
                     one[m] = signal[m] - around[m]
-                weighted[i] = weight * one
+                _weigh(weight, one, weighted[i])
             _add_products(parts, change, weighted)
             if listed:
                 mine = groups[min(n, groups.shape[0] - 1), start:stop]
@@ -110,7 +117,7 @@ def products(
             elif count > 0:
                 _add_to_columns(by_column, weighted, weight)
         if not listed:
-            sums[:] = by_column.T
+            copy_matrix(by_column.T, sums)
         for i in range(kinds):
             for j in range(i + 1):
                 total = parts[i * (i + 1) // 2 + j].sum() - _share(sums, i, j, deviation)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 
 Indices = NDArray[np.int64]
 Room = tuple[Floats, Indices, Indices]
@@ -239,7 +240,7 @@ def _improve(  # noqa: PLR0917 - Numba takes no keyword-only ones
             faults = fewest + find_dark(count, trials[h], best - fewest, code, view, partners)
             if faults < best:
                 best = faults
-                found[:] = trials[h]
+                copy_row(trials[h], found)
     return best
 
 

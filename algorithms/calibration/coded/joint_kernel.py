@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 
 #: Least distance from the median, px, that counts as disagreement.
 _LEAST_PX = 0.01
@@ -47,7 +48,7 @@ def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
         y = np.median(room[1, :n])
         for m in range(n):
             room[2, m] = math.hypot(room[0, m] - x, room[1, m] - y)
-        previous[:] = own
+        copy_row(own, previous)
         reach = worst * max(np.median(room[2, :n]), _LEAST_PX)
         across, along, kept, n = 0.0, 0.0, 0, 0
         for s in range(lists.shape[1]):
@@ -67,6 +68,6 @@ def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
                     across += lists[k, s, 0] - places[previous[s], 0]
                     along += lists[k, s, 1] - places[previous[s], 1]
                     kept += 1
-            own[:] = previous
+            copy_row(previous, own)
         found[k, 0] = across / kept
         found[k, 1] = along / kept

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 from algorithms.kernels.cholesky import solve
+from algorithms.kernels.copies import copy_row
 
 Counts = NDArray[np.int64]
 
@@ -253,7 +254,7 @@ def _iterate(  # noqa: PLR0917 - Numba takes no keyword-only ones
             rounds += 1
             if rounds == _ROUNDS or same_pixels(places, groups, halves, count, around, found):
                 return True
-            around[:] = found
+            copy_row(found, around)
             before[:] = 0.0
         elif _SLOW * square < along < _SLOWEST * square:
             more = along / (square - along)
@@ -297,7 +298,7 @@ def fit_images(  # noqa: PLR0917 - Numba takes no keyword-only ones
         pairs[r] = -1
         if not np.isfinite(starts[r]).all():
             continue
-        shifts[:] = starts[r]
+        copy_row(starts[r], shifts)
         good = True
         for _ in range(2):  # the peaks that overlap, as at the start and then as fitted
             first, second = image_type(places, groups, halves[r], shifts, overlap)
@@ -313,7 +314,7 @@ def fit_images(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for i in range(spots):
                 at = round(places[i] + shifts[groups[i]])
                 found[column[i]] = lines[r, min(max(at, 0), length - 1)] - floors[r]
-            found[count:] = shifts
+            copy_row(shifts, found[count:])
             good = _iterate(
                 lines[r],
                 floors[r],
@@ -334,8 +335,8 @@ def fit_images(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 good = good and found[column[i]] > 0 and -0.5 <= at <= length - 0.5
             if not good:
                 break
-            shifts[:] = found[count:]
-            out[r] = shifts
+            copy_row(found[count:], shifts)
+            copy_row(shifts, out[r])
         if not good:
             out[r] = np.nan
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 
 _PIVOTS = 4
 """Rows of the factor that are taken from those below in one pass; the code names each of them."""
@@ -34,7 +35,7 @@ def solve(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Flo
     """
     count = len(wanted)
     for p in range(count):
-        factor[p, p:] = normal[p, p:]
+        copy_row(normal[p, p:], factor[p, p:])
         factor[p, p] += added
         out[p] = wanted[p]
     for first in range(0, count, _PIVOTS):

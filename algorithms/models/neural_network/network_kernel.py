@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 from algorithms.models.neural_network.cholesky_kernel import solve
 
 Layers = NDArray[np.int64]
@@ -135,7 +136,8 @@ def network_values(
         size = min(_BLOCK, len(inputs) - start)
         _forward(inputs[start : start + size], weights, widths, kinds, units)
         for output in range(outputs):
-            out[start : start + size, output] = units[everything - outputs + output, :size]
+            answers = units[everything - outputs + output, :size]
+            copy_row(answers, out[start : start + size, output])
 
 
 @compiled
@@ -190,7 +192,7 @@ def _derivatives(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 seen = units[below + source, :size]
                 for i in range(size):
                     rows[i, place + source] = slope[i] * seen[i]
-            rows[:, place + sources] = slope
+            copy_row(slope, rows[:, place + sources])
 
 
 @compiled
@@ -278,7 +280,8 @@ def _normal_equations(
             found = rows[:size, output]
             _derivatives(units, output, weights, widths, kinds, room.slopes, found[:, :count])
             answer = units[everything - outputs + output, :size]
-            found[:, count] = answer - wanted[start : start + size, output]
+            for i in range(size):
+                found[i, count] = answer[i] - wanted[start + i, output]
         rows[size:] = 0.0
         _add_products(products, listed, (size * outputs + 3) // 4 * 4)
     products /= len(wanted)
@@ -380,7 +383,7 @@ def train(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if not found < cost:
             break
         damping = max(damping * _LESS, _LEAST)
-        here[:] = trial
+        copy_row(trial, here)
         cost = found
         held = _mean_square(held_inputs, held_wanted, here, widths, kinds, room.held)
         stale += 1
@@ -388,5 +391,5 @@ def train(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if held < best * _BETTER:
                 stale = 0
             best, fitted, taken = held, cost, number
-            weights[:] = here
+            copy_row(here, weights)
     return best, fitted, taken

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_matrix, copy_row
 from benchmark.simulator.kernels.fresnel import cubic_shares
 
 Four = tuple[float, float, float, float]
@@ -125,7 +126,7 @@ def _way(sun: Floats, numbers: Floats, layers: Floats) -> Floats:
         along += share * layers[m, 1] ** 2 / square
     way[2] = sine * across
     way[3], way[4] = numbers[2] / along, numbers[3] / across
-    way[5:] = numbers[4:9]
+    copy_row(numbers[4:9], way[5:])
     return way
 
 
@@ -319,7 +320,7 @@ def _lattice(tables: Sizes, way: Floats, reach: Floats, nodes: Floats, corner: R
             if lit:
                 line = left + start * spacing - half, y - half, spacing
                 _pixels(total, tables, line, (nodes, way), work)
-                out[:, row, start : start + count] = total[:, :count]
+                copy_matrix(total[:, :count], out[:, row, start : start + count])
     return out
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 from benchmark.simulator.kernels.fresnel import between_nodes, cubic_shares, is_inside
 
 Complex = tuple[float, float]
@@ -251,7 +252,7 @@ def add_rectangle(
         if light == 0.0 or a <= 0.0 or b <= 0.0:
             continue
         sample[0] = light
-        sample[3:16] = shapes[n, 1:14]
+        copy_row(shapes[n, 1:14], sample[3:16])
         x, y = middles[n]
         if turned:
             # the window's middle stands in the middle of the cells

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.copies import copy_row
 
 #: Local maxima of the accumulator that are looked at more closely.
 _CANDIDATES = 40
@@ -315,7 +316,7 @@ def _best(  # noqa: PLR0917 - Numba takes no keyword-only ones
             best = n
     if best < 0:
         return False
-    out[:] = circles[best]
+    copy_row(circles[best], out)
     for n in range(len(places)):
         apart = math.hypot(circles[n, 0] - circles[best, 0], circles[n, 1] - circles[best, 1])
         if sure and scores[n] > _RIVAL * scores[best] and apart > circles[best, 2]:

@@ -27,6 +27,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     places,
 )
 from algorithms.extractors.frames.mirror.records import SUMS, Background, Box, State, Sums
+from algorithms.kernels.copies import copy_row
 from algorithms.kernels.records import Records
 
 #: The sharpest weighting: slope along one axis by four pixels, mean along the other by three.
@@ -385,7 +386,8 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
                 break
             level += 1
             old = wide[(level - 1) % 2]
-            h_x[:], h_y[:] = a, b
+            copy_row(a, h_x)
+            copy_row(b, h_y)
         n_x, n_y, steep = np.float32(state.d[0]), np.float32(state.d[1]), slack[k, :n]
         for q in range(n):
             left[q] = differences[q] + n_x * g_x[q] + n_y * g_y[q]

@@ -16,6 +16,7 @@ from algorithms.extractors.frames.multi_spot.records import (
     Partners,
     Seen,
 )
+from algorithms.kernels.copies import copy_row
 
 Votes = NDArray[np.int16]
 
@@ -245,8 +246,8 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
         at = kept - 1 if kept == room else kept
         while at > 0 and score[at - 1] < quality - _EQUAL:
             score[at] = score[at - 1]
-            places[at] = places[at - 1]
-            partners[at] = partners[at - 1]
+            copy_row(places[at - 1], places[at])
+            copy_row(partners[at - 1], partners[at])
             at -= 1
         score[at] = quality
         places[at, 0] = x

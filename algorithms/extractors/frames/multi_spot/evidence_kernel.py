@@ -22,6 +22,7 @@ from algorithms.extractors.frames.multi_spot.records import (
     Work,
 )
 from algorithms.extractors.frames.multi_spot.view_kernel import DARK, OUT
+from algorithms.kernels.copies import copy_row
 
 #: What `decide` says of a frame: an answer, no pattern found, several that it may be, and an answer
 #: that it is not, should lines be seen twice in full light.
@@ -393,7 +394,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
             )
         last = (np.nan, np.nan, reach)
         if answer >= 0:
-            displacement[k] = places[k, answer]
+            copy_row(places[k, answer], displacement[k])
             for a in range(number):
                 chosen[k, a] = matches.partners[k, answer, a]
             if reach > 0.0:
