@@ -50,12 +50,12 @@ def alike(
     errors_deg : mapping of str to float
         RMS error of models on the reader's data.
     nominal : mapping
-        Published scores by data set, extractor and model, with `own_deg`.
+        Published scores by data set, extractor and model, with `own_error_deg`.
     """
     mine = {name: error for name, error in errors_deg.items() if error > 0}
     theirs: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
     for (dataset, extractor, model), row in nominal.items():
-        if model in mine and row["status"] == "ok" and row["own_deg"]:
+        if model in mine and row["status"] == "ok" and row["own_error_deg"]:
             theirs.setdefault((dataset, extractor), {})[model] = row
     best: dict[str, Likeness] = {}
     for (dataset, extractor), rows in theirs.items():
@@ -63,13 +63,13 @@ def alike(
         if len(names) < _FEWEST:
             continue
         own = np.log([mine[name] for name in names])
-        other = np.log([rows[name]["own_deg"] for name in names])
+        other = np.log([rows[name]["own_error_deg"] for name in names])
         apart = (own - np.median(own)) - (other - np.median(other))
         first = rows[names[0]]
         found = Likeness(
             dataset, first["detector"], first["mask"], extractor,
             float(np.exp(np.sqrt(np.mean(apart**2)))),
-            {name: float(rows[name]["own_deg"]) for name in names},
+            {name: float(rows[name]["own_error_deg"]) for name in names},
         )  # fmt: skip
         if dataset not in best or found.factor < best[dataset].factor:
             best[dataset] = found

@@ -170,10 +170,10 @@ class Answer:
     def _nearest_row(self) -> Mapping[int, int]:
         """Of each architecture the pipeline that misses fewest requirements, then errs least."""
         question, table = self.question, self.question.table
-        among = question.candidates & np.isfinite(question.errors.own_deg)
+        among = question.candidates & np.isfinite(question.errors.own_error_deg)
         if not among.any():
             among = question.candidates
-        shown, own = question.shown_deg, question.errors.own_deg
+        shown, own = question.shown_deg, question.errors.own_error_deg
         values = np.where(np.isfinite(shown), shown, own)
         return _nearest(among, question.by_pipeline, values, table.row_place)
 

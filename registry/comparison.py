@@ -33,15 +33,16 @@ class Contradiction:
     dataset: str
     condition: str
     first: str
-    first_own_deg: float
+    first_own_error_deg: float
     other: str
-    other_own_deg: float
+    other_own_error_deg: float
     studies: int
 
     @property
     def ratio(self) -> float | None:
         """Error of the first over that of the other; None over zero."""
-        return self.first_own_deg / self.other_own_deg if self.other_own_deg else None
+        other = self.other_own_error_deg
+        return self.first_own_error_deg / other if other else None
 
     @property
     def sentence(self) -> str:
@@ -49,10 +50,11 @@ class Contradiction:
         who = f"{self.studies} {'studies' if self.studies > 1 else 'study'} used"
         said = who if self.kind == "studies" else "The survey advises"
         times = "" if self.ratio is None else f", {self.ratio:.3g} times smaller"
+        first, other = self.first_own_error_deg, self.other_own_error_deg
         return (
-            f"{self.detector} + {self.mask}: {said} {self.first}, own error "
-            f"{self.first_own_deg:.3g} deg; {self.other} reaches {self.other_own_deg:.3g} deg on "
-            f"the same data ({self.dataset}, {self.condition}){times}."
+            f"{self.detector} + {self.mask}: {said} {self.first}, own error {first:.3g} deg; "
+            f"{self.other} reaches {other:.3g} deg on the same data "
+            f"({self.dataset}, {self.condition}){times}."
         )
 
 
@@ -73,7 +75,7 @@ def _of(answer: Answer, one: RankedArchitecture) -> Iterator[Contradiction]:
     designs = {row: table.designs[int(table.row_design[row])] for row in rows}
     used = [row for row in rows if designs[row].users]
     advised = [row for row in rows if designs[row].advice]
-    own = question.errors.own_deg
+    own = question.errors.own_error_deg
     for kind, among, key in (
         ("studies", used, lambda row: (-len(designs[row].users), own[row])),
         ("advice", advised, lambda row: (own[row],)),

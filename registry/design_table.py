@@ -31,15 +31,15 @@ class PipelineErrors:
 
     Attributes
     ----------
-    own_deg : largest error; infinite where a pipeline answers too seldom or its data set lacks the
-        field
+    own_error_deg : largest error; infinite where a pipeline answers too seldom or its data set
+        lacks the field
     nominal_deg : error under the first condition alone
     availability : least answered share; NaN where one is unknown
     covers : whether the data set has conditions with all hazards
     on_bench : errors kept on a bench by a share of units; NaN where none has asked yet
     """
 
-    own_deg: Numbers
+    own_error_deg: Numbers
     nominal_deg: Numbers
     availability: Numbers
     covers: Flags
@@ -155,7 +155,7 @@ class DesignTable:
     @cached_property
     def log_error(self) -> Numbers:
         """Standard error of the log of each own error, the mean over the units measured."""
-        measured = np.sqrt([max(len(row.unit_own_deg), 1) for row in self.rows])
+        measured = np.sqrt([max(len(row.unit_own_error_deg), 1) for row in self.rows])
         return np.asarray(np.log(self.unit_ratios).std(axis=1, ddof=1) / measured)
 
     @cached_property
@@ -195,7 +195,7 @@ class DesignTable:
 
     def within(
         self,
-        own_deg: Numbers,
+        own_error_deg: Numbers,
         among: Flags | list[int] | slice,
         bench_deg: float | None,
         share: float,
@@ -204,15 +204,15 @@ class DesignTable:
 
         Parameters
         ----------
-        own_deg : own errors of all pipelines
+        own_error_deg : own errors of all pipelines
         among : those of them that are looked at, as flags or positions
         bench_deg : error of the bench; None or 0 for true directions
         share : of units and benches
         """
         if bench_deg:
-            return at_confidence(own_deg[among], self.unit_ratios[among], bench_deg, share)
+            return at_confidence(own_error_deg[among], self.unit_ratios[among], bench_deg, share)
         unit = math.ceil(share * UNITS - 1e-9) - 1
-        return np.asarray(own_deg[among] * self.unit_ratios[among, unit])
+        return np.asarray(own_error_deg[among] * self.unit_ratios[among, unit])
 
     @cached_property
     def report_numbers(self) -> Mapping[str, Numbers]:

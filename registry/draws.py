@@ -53,12 +53,14 @@ def unit_ratios(errors_deg: Sequence[float], spread: float) -> tuple[float, ...]
     return tuple(math.exp(logs[int(share * len(logs))] - middle) for share in _SHARES)
 
 
-def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: float, share: float) -> Numbers:
+def at_confidence(
+    own_error_deg: Numbers, ratios: Numbers, bench_deg: float, share: float
+) -> Numbers:
     """Return the errors (R,) that a share of the draws keeps within, of R pipelines.
 
     Parameters
     ----------
-    own_deg
+    own_error_deg
         Own errors (R,); infinite where there is none.
     ratios
         Of units (R, units) over these, ascending.
@@ -68,22 +70,24 @@ def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: float, share: fl
         Of the draws.
     """
     reach, unit, bench = _largest_draws(share)
-    squares = ((own_deg[:, None] * ratios) ** 2)[:, unit] + ((bench_deg * _BENCHES) ** 2)[bench]
+    squares = ((own_error_deg[:, None] * ratios) ** 2)[:, unit] + ((bench_deg * _BENCHES) ** 2)[
+        bench
+    ]
     place = len(unit) - reach
     squares.partition(place, axis=1)
     return np.asarray(np.sqrt(squares[:, place]))
 
 
-def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: float, share: float) -> Numbers:
+def unit_errors(own_error_deg: Numbers, ratios: Numbers, bench_deg: float, share: float) -> Numbers:
     """Return the error (R, units) that each unit keeps on a share of the benches.
 
     Parameters as `at_confidence`. Infinite where a pipeline has no own error.
     """
     bench = bench_deg * BENCHES[_fewest(share, len(BENCHES)) - 1]
-    return np.asarray(np.sqrt((own_deg[:, None] * ratios) ** 2 + bench**2))
+    return np.asarray(np.sqrt((own_error_deg[:, None] * ratios) ** 2 + bench**2))
 
 
-def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> Numbers:
+def bench_for(own_error_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> Numbers:
     """Return the largest bench error (R,) with which a share of the draws meets a limit.
 
     A draw meets it up to the bench error that takes its squares to the limit's: of these, the one
@@ -91,13 +95,13 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
 
     Parameters
     ----------
-    own_deg, ratios
+    own_error_deg, ratios
         As `at_confidence`.
     limit_deg, share
         What is asked for.
     """
     reach, unit, bench = _largest_draws(share)
-    most = np.sqrt(np.maximum(limit_deg**2 - (own_deg[:, None] * ratios) ** 2, 0.0))
+    most = np.sqrt(np.maximum(limit_deg**2 - (own_error_deg[:, None] * ratios) ** 2, 0.0))
     draws = most[:, unit] / _BENCHES[bench]
     draws.partition(reach - 1, axis=1)
     return np.asarray(np.minimum(draws[:, reach - 1], limit_deg))

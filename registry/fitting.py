@@ -53,7 +53,7 @@ COMPENSATIONS = "Physics-Informed"
 class ChosenMethod:
     """A method by name, the stated values that it runs, and what it stands in for.
 
-    ``stands_for`` is a stated value that nothing runs here, or "None" where the study states none;
+    ``replaces`` is a stated value that nothing runs here, or "None" where the study states none;
     empty where the method is the study's own. ``unsaid`` is a value whose kind the study does not
     state, where one of its kinds is run; ``variant`` the study's way to carry the method out that
     this is of, ``other_variant`` one that it is not of.
@@ -61,7 +61,7 @@ class ChosenMethod:
 
     name: str
     runs: tuple[str, ...]
-    stands_for: str = ""
+    replaces: str = ""
     unsaid: str = ""
     variant: MethodVariant | None = None
     other_variant: MethodVariant | None = None
@@ -215,7 +215,7 @@ class PipelinesOfStudy:
         own = [v for v in study.of("extractor") if v != NO_IMPLEMENTATION_STATED]
         if near:
             return [
-                self._extractors_of(other, stands_for=value)
+                self._extractors_of(other, replaces=value)
                 for value in own
                 for other in self._stand_ins("extractor", value)
                 if other not in own
@@ -224,15 +224,15 @@ class PipelinesOfStudy:
         if len(own) == len(study.of("extractor")):
             return [stated]
         return [stated] * bool(own) + [
-            self._extractors_of(simple, stands_for=NO_IMPLEMENTATION_STATED)
+            self._extractors_of(simple, replaces=NO_IMPLEMENTATION_STATED)
             for simple in SIMPLEST["extractor"]
             if simple not in own
         ]
 
-    def _extractors_of(self, value: str, stands_for: str = "") -> list[ChosenMethod]:
-        runs = () if stands_for else (value,)
+    def _extractors_of(self, value: str, replaces: str = "") -> list[ChosenMethod]:
+        runs = () if replaces else (value,)
         return [
-            ChosenMethod(cls.about.name, runs, stands_for)
+            ChosenMethod(cls.about.name, runs, replaces)
             for kind in self.kinds("extractor", value)
             for cls in self.catalogue.extractors_for(kind)
         ]
@@ -325,7 +325,7 @@ class PipelinesOfStudy:
         return tuple(v for v in dict.fromkeys(order) if v != value)
 
     def _chosen_method(
-        self, study: Study, name: str, of: Mapping[str, str], stands_for: str = ""
+        self, study: Study, name: str, of: Mapping[str, str], replaces: str = ""
     ) -> ChosenMethod:
         own = self._stages_of(study)[name]
         run = [of[stage] for stage in own if stage in of]
@@ -335,7 +335,7 @@ class PipelinesOfStudy:
             missed = None
         carried = [v for value in run for v in self._carried_out(study, value)]
         return ChosenMethod(
-            name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed
+            name, tuple(dict.fromkeys((*run, *carried))), replaces, unsaid, None, missed
         )
 
     def _stages_of(self, study: Study) -> Mapping[str, tuple[str, ...]]:

@@ -42,7 +42,7 @@ PARTS = ("model", "extractor", "exclude_model", "exclude_extractor", "properties
 _DESIGNS = (*_ARCHITECTURE, *PARTS)
 _STUDIES = ("task", "error", "exclude_task", "exclude_error", "exclude_accuracy")
 _CANDIDATES = (*_DESIGNS, *_STUDIES)
-_ERRORS = ("min_fov_deg", "survive", "sun_distance_au")
+_ERRORS = ("min_fov_deg", "tolerate", "sun_distance_au")
 _JUDGED = (*_CANDIDATES, *_ERRORS, "max_error_deg", "accuracy", "bench_deg", "confidence")
 #: Those that a measured pipeline can meet or miss.
 _MEASURED = (
@@ -97,7 +97,7 @@ class Question:
     @_shared(*_JUDGED)
     def judged_deg(self) -> Numbers:
         """Error that a limit is compared with: kept by the share of units (and stated benches)."""
-        table, asked, own = self.table, self.requirements, self.errors.own_deg
+        table, asked, own = self.table, self.requirements, self.errors.own_error_deg
         found = np.where(self.candidates, table.within(own, slice(None), None, asked.share), np.inf)
         if not asked.bench_deg:
             return found
@@ -111,7 +111,7 @@ class Question:
 
     def judged_alone_deg(self, row: int) -> float:
         """Return the same of one pipeline, also where it misses without a bench."""
-        own, asked = self.errors.own_deg, self.requirements
+        own, asked = self.errors.own_error_deg, self.requirements
         if math.isfinite(self.judged_deg[row]):
             return float(self.judged_deg[row])
         return float(self.table.within(own, [row], asked.bench_deg, asked.share)[0])
@@ -120,7 +120,7 @@ class Question:
     def shown_deg(self) -> Numbers:
         """Error that pipelines are ordered by: on the stated bench, else the own error."""
         is_stated = self.requirements.bench_deg is not None
-        return self.judged_deg if is_stated else self.errors.own_deg
+        return self.judged_deg if is_stated else self.errors.own_error_deg
 
     @cached_property
     def by_pipeline(self) -> Mapping[str, States]:
@@ -134,7 +134,7 @@ class Question:
 
     def _by_pipeline(self, name: str) -> States:
         errors, limit = self.errors, self.requirements.value_of(name)
-        answered = np.isfinite(errors.own_deg)
+        answered = np.isfinite(errors.own_error_deg)
         known: Flags | bool = True
         if name == "max_error_deg":
             meets, known = self.judged_deg <= limit, answered | errors.covers
@@ -232,7 +232,7 @@ class Question:
     @cached_property
     def measured(self) -> Flags:
         """Measured pipelines that meet all requirements; unknown mass, power and rate is enough."""
-        found = self.candidates & np.isfinite(self.errors.own_deg)
+        found = self.candidates & np.isfinite(self.errors.own_error_deg)
         for states in self.by_pipeline.values():
             found &= states == MEETS
         for states in self.by_place.values():
@@ -270,7 +270,7 @@ class Question:
         Rounded down to two digits, so that a bench of that error does. None without a limit, or
         where none of them has an error.
         """
-        limit, own = self.requirements.largest_deg, self.errors.own_deg[rows]
+        limit, own = self.requirements.largest_deg, self.errors.own_error_deg[rows]
         if limit is None or not np.isfinite(own).any():
             return None
         needed = bench_for(own, self.table.unit_ratios[rows], limit, self.requirements.share)

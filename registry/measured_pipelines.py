@@ -79,7 +79,7 @@ class MeasuredPipeline:
     hazards
         Scores by hazard (`registry.requirements.HAZARDS`), under the conditions of this data set
         that include it. A hazard without a condition is absent.
-    unit_own_deg
+    unit_own_error_deg
         Own errors of the units of the sensor, the standard one first, under the first condition.
     unit_ratios
         Errors of ten units over their geometric mean (`registry.draws.unit_ratios`).
@@ -103,7 +103,7 @@ class MeasuredPipeline:
     hazards: Mapping[str, tuple[Score, ...]] = field(default_factory=dict, hash=False)
     half_fov_deg: float | None = None
     latency_us: float | None = None
-    unit_own_deg: tuple[float, ...] = ()
+    unit_own_error_deg: tuple[float, ...] = ()
     unit_ratios: tuple[float, ...] = (1.0,) * UNITS
     bench_deg: float = 0.0
     needs: tuple[str, ...] = ()

@@ -87,7 +87,7 @@ def in_words(name: str, asked: Value) -> str:
     """Return a requirement in words, with the values that the reader gave."""
     if not isinstance(asked, tuple):
         return _WORDS[name].format(asked)
-    if name == "survive":
+    if name == "tolerate":
         return f"surviving {' and '.join(asked)}"
     if name == "exclude_needs":
         return f"no need of {' or '.join(asked)}"

@@ -80,7 +80,7 @@ HAZARDS: Mapping[str, str] = MappingProxyType(
 )
 """Hazards that a sensor may have to tolerate; `benchmark.datasets.hazards` lists the conditions."""
 
-LISTS = ("survive", "properties")
+LISTS = ("tolerate", "properties")
 """Requirements of which all values must hold: hazards, and properties of the assessment."""
 
 NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -111,7 +111,7 @@ MISSIONS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
             "min_fov_deg": 100.0,
             "max_mass_g": 50.0,
             "max_power_mw": 200.0,
-            "survive": ("albedo",),
+            "tolerate": ("albedo",),
         },
         "deep-space": {
             "max_error_deg": 0.1,
@@ -121,7 +121,7 @@ MISSIONS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
         "lunar-surface": {
             "max_error_deg": 0.1,
             "min_fov_deg": 100.0,
-            "survive": ("temperature",),
+            "tolerate": ("temperature",),
             "exclude_needs": ("nadir", "magnetic-field"),
         },
         "spinner": {"max_error_deg": 0.5, "min_rate_hz": 5.0, "exclude_needs": ("rates",)},
@@ -178,7 +178,7 @@ class Requirements:
     class. An excluded error or accuracy removes every study that has it; an excluded task removes
     the studies that have no other task.
 
-    Under every hazard of ``survive`` the availability must be high enough, and the error within
+    Under every hazard of ``tolerate`` the availability must be high enough, and the error within
     the largest error if there is one. An extractor must have all ``properties`` in the survey's
     assessment, at least partly.
     """
@@ -192,7 +192,7 @@ class Requirements:
     max_mass_g: float | None = None
     max_power_mw: float | None = None
     min_rate_hz: float | None = None
-    survive: tuple[str, ...] = ()
+    tolerate: tuple[str, ...] = ()
     properties: tuple[str, ...] = ()
     exclude_needs: tuple[str, ...] = ()
     bench_deg: float | None = None
@@ -254,7 +254,7 @@ class Requirements:
         for name in (*LIMITS, *_RANGES):
             if getattr(self, name) is not None:
                 _require_number(name, getattr(self, name))
-        lists = (("survive", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS))
+        lists = (("tolerate", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS))
         for name, known in lists:
             for value in getattr(self, name):
                 if value not in known:
@@ -286,7 +286,7 @@ class Requirements:
     def hazards(self) -> tuple[str, ...]:
         """Hazards to tolerate, with the one that the distance from the Sun is judged by."""
         of_light = self.light.hazard if self.light else ""
-        return tuple(dict.fromkeys((*self.survive, *filter(None, (of_light,)))))
+        return tuple(dict.fromkeys((*self.tolerate, *filter(None, (of_light,)))))
 
     @property
     def half_field_deg(self) -> float | None:

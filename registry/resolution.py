@@ -335,7 +335,7 @@ def _pipeline(
 
 def _method(study: Study, attribute: str, chosen: ChosenMethod) -> Part:
     """Return what a method rests on: the weakest of its stated values, or a rule."""
-    if chosen.stands_for:
+    if chosen.replaces:
         return Part(chosen.name, "defaulted", _stand_in(attribute, chosen))
     if chosen.variant:
         said: Basis = "inferred" if chosen.variant.basis == "inferred" else "stated"
@@ -355,6 +355,6 @@ def _stand_in(attribute: str, chosen: ChosenMethod) -> str:
     """Say by what rule a method that a study does not state stands in its pipeline."""
     if chosen.runs:
         return f"{', '.join(chosen.runs)} ahead of the simplest model that fits"
-    if chosen.stands_for == NO_IMPLEMENTATION_STATED:
+    if chosen.replaces == NO_IMPLEMENTATION_STATED:
         return f"the survey states no {attribute}; the simplest that fits the sensor is used"
-    return f"used instead of {chosen.stands_for}, which is not implemented for this sensor"
+    return f"used instead of {chosen.replaces}, which is not implemented for this sensor"

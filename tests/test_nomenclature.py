@@ -31,7 +31,7 @@ def test_the_context_s_columns_are_all_there() -> None:
 
 def test_the_scores_are_all_there_but_the_rings() -> None:
     scores = {name for name in METRICS if not name.startswith("rms_") or name[4].isalpha()}
-    assert names("Scores") == scores | {"own_deg", "on_bench_deg"}
+    assert names("Scores") == scores | {"own_error_deg", "on_bench_deg"}
 
 
 def test_the_filters_symbols_are_methods_of_the_state_space() -> None:

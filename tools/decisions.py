@@ -32,7 +32,7 @@ def bench(boards: Sequence[Sequence[Row]]) -> str:
             pairs.append(best[:2])
     ratios = (
         statistics.median(second[error] / first[error] for first, second in pairs)
-        for error in ("own_deg", "on_bench_deg")
+        for error in ("own_error_deg", "on_bench_deg")
     )
     own, on_bench = ratios
     return (

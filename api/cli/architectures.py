@@ -91,7 +91,11 @@ def _calibration(rank: int, one: Calibration) -> dict[str, str]:
     own = "not measured"
     if found is not None:
         over = "" if found.field_deg in {None, 360.0} else f" over {found.field_deg:g}"
-        own = "availability below 95 %" if found.own_deg is None else f"{found.own_deg:.3g}{over}"
+        own = (
+            "availability below 95 %"
+            if found.own_error_deg is None
+            else f"{found.own_error_deg:.3g}{over}"
+        )
     cells = (
         str(rank),
         one.name,

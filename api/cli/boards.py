@@ -69,7 +69,7 @@ def _architecture(row: Row) -> tuple[str, ...]:
     return (
         name,
         pipeline,
-        digits(row["own_deg"]),
+        digits(row["own_error_deg"]),
         "=" if row["tie"] else "",
         _percent(row["own_se"]),
         _ratio(row["over_bound"]),
@@ -130,11 +130,11 @@ def _seldom(rows: Sequence[Row]) -> str:
 def _finer(rows: Sequence[Row]) -> str:
     """Name pipelines with a lower error at lower availability."""
     named = [
-        f"{row['detector']} {row['mask']} {digits(row['finer_own_deg'])} deg "
-        f"({row['finer_extractor']} + {row['finer_model']}, "
-        f"{100 * row['finer_availability']:.0f} %)"
+        f"{row['detector']} {row['mask']} {digits(row['partial_own_error_deg'])} deg "
+        f"({row['partial_extractor']} + {row['partial_model']}, "
+        f"{100 * row['partial_availability']:.0f} %)"
         for row in rows
-        if row["finer_extractor"] is not None
+        if row["partial_extractor"] is not None
     ]
     return f"Lower error at lower availability: {'; '.join(named)}." if named else ""
 

@@ -15,6 +15,7 @@ from pydantic_core import PydanticUndefined
 
 from api.cli import completion
 from api.schema import words
+from api.schema.former_names import PARAMETERS
 from api.schema.parameters import OneOf
 from registry.taxonomy import ATTRIBUTES, NO_IMPLEMENTATION_STATED, NONE_STATED
 
@@ -119,7 +120,8 @@ def option_of(model: type[BaseModel], name: str, option: str | None = None) -> A
         kind = _choices(get_args(kind))
     made = list[kind] if several else kind
     flag = f"--{(option or name).replace('_', '-')}"
-    return Annotated[made | None if default is None else made, typer.Option(flag, **settings)]
+    flags = [flag, *(f"--{old}" for old, new in PARAMETERS.items() if new == name)]
+    return Annotated[made | None if default is None else made, typer.Option(*flags, **settings)]
 
 
 def _kinds(annotation: Any) -> Iterator[Any]:

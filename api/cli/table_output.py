@@ -16,6 +16,7 @@ import typer
 
 from api.cells import cell, plain_value
 from api.cli import spreadsheets
+from api.schema.former_names import with_former_names
 from api.schema.table import csv_of
 
 Row = Mapping[str, Any]
@@ -140,7 +141,7 @@ def _side_by_side(
 
 def emit_json(document: Any) -> None:
     """Print a document as JSON; NaN and infinities, which JSON lacks, as null."""
-    write(json.dumps(plain_value(document), indent=2, ensure_ascii=False) + "\n")
+    write(json.dumps(plain_value(with_former_names(document)), indent=2, ensure_ascii=False) + "\n")
 
 
 def emit_csv(text: str) -> None:

@@ -49,7 +49,16 @@ _PLACE = ("detector", "mask")
 _PIPELINE = ("dataset", "condition", "extractor", "model")
 _KEY = (*_PIPELINE, "unit")
 _RANKED = (
-    *("rank", "group", "tied", *_PIPELINE, "own_deg", "own_se", "on_bench_deg", "on_bench_basis"),
+    *(
+        "rank",
+        "group",
+        "tied",
+        *_PIPELINE,
+        "own_error_deg",
+        "own_se",
+        "on_bench_deg",
+        "on_bench_basis",
+    ),
     *("twin_of", "folded", "rms_deg", "low_deg", "high_deg", "unit_rms_deg"),
 )
 

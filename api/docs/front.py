@@ -91,7 +91,7 @@ def figure() -> Figure:
     """Draw the same as a figure of Matplotlib."""
     from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
 
-    rows = sorted(_architectures(), key=lambda row: row["own_deg"] or 1e9, reverse=True)
+    rows = sorted(_architectures(), key=lambda row: row["own_error_deg"] or 1e9, reverse=True)
     drawn = Figure(figsize=(_WIDTH_IN, _ROW_IN * len(rows) + _FRAME_IN), layout="constrained")
     axes = drawn.subplots()
 
@@ -101,15 +101,15 @@ def figure() -> Figure:
         axes.plot(errors, [height] * len(errors), marker, **style)
 
     for height, row in enumerate(rows):
-        if row["own_deg"] is None:
+        if row["own_error_deg"] is None:
             continue
-        ends = [row["bound_deg"], row["own_deg"]]
+        ends = [row["bound_deg"], row["own_error_deg"]]
         axes.plot(ends, [height] * 2, color="#c5ccd3", linewidth=1.2)
         mark("bound", ends[:1], height)
         built = built_sensors().get((row["detector"], row["mask"]), ())
         mark("built", [error for error in built if error >= row["bound_deg"]], height)
         mark("built", [error for error in built if error < row["bound_deg"]], height, "none")
-        used = [other["own_deg"] for other in _boards()[row["dataset"]] if other["studies"]]
+        used = [other["own_error_deg"] for other in _boards()[row["dataset"]] if other["studies"]]
         mark("used", sorted(used)[:1], height)
         mark("best", ends[1:], height)
     axes.set_xscale("log")

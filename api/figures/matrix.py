@@ -142,7 +142,7 @@ def _evidence_members(pair: tuple[Value, Value], known: PairEvidence) -> dict[st
         "reason": known.reason,
         "unknown": list(known.unknown),
         "pipelines": known.pipelines,
-        "best_own_deg": None if best is None else best.nominal.rms_deg,
+        "best_own_error_deg": None if best is None else best.nominal.rms_deg,
         "best_dataset": None if best is None else best.dataset,
         "best_extractor": None if best is None else best.extractor,
         "best_model": None if best is None else best.model,

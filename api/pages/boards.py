@@ -11,7 +11,16 @@ from benchmark.metrics.rings import RINGS
 
 Row = Mapping[str, Any]
 
-COLUMNS = ("dataset", "condition", "rank", "of", "partner", "own_deg", "bound_deg", "over_bound")
+COLUMNS = (
+    "dataset",
+    "condition",
+    "rank",
+    "of",
+    "partner",
+    "own_error_deg",
+    "bound_deg",
+    "over_bound",
+)
 """What a place tells."""
 MOST_LINES = 5
 PARTNERS = {"extractor": "model", "model": "extractor"}

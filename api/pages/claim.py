@@ -76,12 +76,12 @@ def _chart(document: Mapping[str, Any]) -> LineChart:
     lines = [
         Line(
             name,
-            list(zip(line["across"], line["median"], strict=True)),
-            list(zip(line["across"], line["low"], line["high"], strict=True)),
+            list(zip(line["x"], line["median"], strict=True)),
+            list(zip(line["x"], line["low"], line["high"], strict=True)),
         )
         for name, line in document["lines"].items()
     ]
-    across = document["across"] or ""
+    across = document["x_label"] or ""
     # What stands across may be words, such as conditions: those are shown as a table.
     drawn = [
         line
@@ -91,6 +91,6 @@ def _chart(document: Mapping[str, Any]) -> LineChart:
     spread = [x for line in drawn for x, _ in line.points]
     wide = bool(spread) and min(spread) > 0 and max(spread) / min(spread) > 20
     return LineChart(
-        drawn, across, document["up"] or "", f"Measurements for claim {document['id']}",
+        drawn, across, document["y_label"] or "", f"Measurements for claim {document['id']}",
         log_across=wide,
     )  # fmt: skip

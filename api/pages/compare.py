@@ -27,8 +27,8 @@ from registry.taxonomy import InvalidValueError
 router = PageRouter()
 
 COLUMNS = (
-    *("detector", "mask", "dataset", "condition", "extractor", "model", "status", "own_deg"),
-    *("bound_deg", "over_bound", "over_least", "availability", "half_fov_deg", "rank"),
+    *("detector", "mask", "dataset", "condition", "extractor", "model", "status", "own_error_deg"),
+    *("bound_deg", "over_bound", "ratio_to_smallest", "availability", "half_fov_deg", "rank"),
     *("low_deg", "high_deg", "needed_poses", "latency_us", "studies", "proposed"),
 )
 FEWEST = 2

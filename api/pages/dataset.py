@@ -40,9 +40,26 @@ EVERY = 500
 FIRST = 8  # rows of a board that are shown at first
 WARM = 20  # pipelines of the heat map
 BOARD_COLUMNS = (
-    *("dataset", "condition", "rank", "group", "tied", "extractor", "model", "status", "own_deg"),
+    *(
+        "dataset",
+        "condition",
+        "rank",
+        "group",
+        "tied",
+        "extractor",
+        "model",
+        "status",
+        "own_error_deg",
+    ),
     *("on_bench_deg", "twin_of", "folded", "rms_deg", "bound_deg", "over_bound", "availability"),
-    *("false_sun", "repeatability_deg", "low_deg", "high_deg", "studies", "best_of_extractor"),
+    *(
+        "false_detection_rate",
+        "repeatability_deg",
+        "low_deg",
+        "high_deg",
+        "studies",
+        "best_of_extractor",
+    ),
 )
 
 

@@ -290,7 +290,7 @@ def _matrix_cells(row: Row) -> list[Cell]:
 
 
 def _own_error(row: Row) -> str:
-    names = ("dataset", "extractor", "model", "own_deg")
+    names = ("dataset", "extractor", "model", "own_error_deg")
     return own_error({name: row[f"best_{name}"] for name in names})
 
 

@@ -27,7 +27,7 @@ router = PageRouter()
 Row = Mapping[str, Any]
 
 #: What rows are put in order by, and the column; names where there is none.
-ORDERS = {"error": "own_deg", "bound": "over_bound", "name": None}
+ORDERS = {"error": "own_error_deg", "bound": "over_bound", "name": None}
 
 
 class LeaderboardQuery(Question):

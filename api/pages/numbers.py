@@ -30,13 +30,13 @@ def own_error(row: Mapping[str, Any]) -> Markup:
 
     Parameters
     ----------
-    row : with `own_deg`, and `dataset`, `extractor` and `model`
+    row : with `own_error_deg`, and `dataset`, `extractor` and `model`
     """
-    if row["own_deg"] is None:
+    if row["own_error_deg"] is None:
         return Markup.escape(NOTHING)
     of = "|".join(row[name] for name in ("dataset", "extractor", "model"))
     shown = Markup('<data class="own-error" value="{}" data-of="{}">{}</data>')
-    return shown.format(row["own_deg"], of, degrees(row["own_deg"]))
+    return shown.format(row["own_error_deg"], of, degrees(row["own_error_deg"]))
 
 
 def wide(value: float | None) -> str:

@@ -24,9 +24,9 @@ from registry.studies import Study
 router = PageRouter()
 
 OTHER = {"detector": "mask", "mask": "detector"}
-COLUMNS = ("value", "name", "category", "studies", "datasets", "best_own_deg", "best_dataset")
+COLUMNS = ("value", "name", "category", "studies", "datasets", "best_own_error_deg", "best_dataset")
 ARCHITECTURE_COLUMNS = (
-    *("detector", "mask", "studies", "datasets", "dataset", "extractor", "model", "own_deg"),
+    *("detector", "mask", "studies", "datasets", "dataset", "extractor", "model", "own_error_deg"),
     *("bound_deg", "over_bound", "half_fov_deg"),
 )
 #: Calibrations of an architecture that its page lists.
@@ -45,14 +45,14 @@ def _document(known: Knowledge, attribute: str, value: str) -> dict[str, Any]:
     studies = [s for s in known.facts.studies.values() if value in s.of(attribute)]
     built = [row for row in best_built(known) if row[attribute] == value]
     cards = [c for c in known.measurements.cards if c[attribute] == value]
-    measured = [row for row in built if row["own_deg"] is not None]
-    best = min(measured, key=lambda row: row["own_deg"], default=None)
+    measured = [row for row in built if row["own_error_deg"] is not None]
+    best = min(measured, key=lambda row: row["own_error_deg"], default=None)
     return {
         **entry,
         "studies": [s.key for s in studies],
         "datasets": [c["name"] for c in cards],
         "best": best,
-        "best_own_deg": best and best["own_deg"],
+        "best_own_error_deg": best and best["own_error_deg"],
         "best_dataset": best and best["dataset"],
         "architectures": _pairs(studies, built, attribute, value),
     }

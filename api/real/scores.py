@@ -83,7 +83,7 @@ def beside_standard(
             **row,
             "dataset": nearest.dataset if nearest else None,
             "extractor": nearest.extractor if nearest else None,
-            "dataset_own_deg": nearest.errors_deg.get(row["model"]) if nearest else None,
+            "dataset_own_error_deg": nearest.errors_deg.get(row["model"]) if nearest else None,
             "factor": round(nearest.factor, 2) if nearest else None,
         }
         for row in rows

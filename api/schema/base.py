@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
+from api.schema.former_names import MEMBERS
 from api.schema.parameters import DEFAULT_PAGE, FIELDS, GIVEN, SORT, Cursor, Limit, OneOf, Several
 from api.schema.table import Model, columns_of, sortable
 from api.schema.vocabulary import meaning
@@ -24,9 +25,13 @@ class Described(BaseModel):
     ) -> dict[str, Any]:
         """Return the JSON schema, with what each member means."""
         made = handler(schema)
-        for name, member in handler.resolve_ref_schema(made).get("properties", {}).items():
+        members = handler.resolve_ref_schema(made).get("properties", {})
+        for name, member in members.items():
             if said := meaning(name, member.get("description")):
                 member["description"] = said
+        for new, old in MEMBERS.items():
+            if new in members:
+                members[old] = {"description": f"Old name of {new}.", "deprecated": True}
         return made
 
 

@@ -46,7 +46,7 @@ class BestOfArchitecture(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used this pipeline on the architecture.")
-    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_se: float | None = Field(description="Relative standard error of the own error.")
     quoted_deg: float | None = Field(description="Error on odd units of the best on even units.")
     on_bench_deg: float | None = Field(description="Error expected on the standard bench.")
@@ -63,21 +63,23 @@ class BestOfArchitecture(Shape):
     others_high_deg: float | None = Field(description="Largest error of the other units.")
     runner_up_extractor: str | None = Field(description="Extractor of the one that ranks next.")
     runner_up_model: str | None = Field(description="Model of the pipeline that ranks next.")
-    runner_up_own_deg: float | None = Field(description="Own error of the one that ranks next.")
+    runner_up_own_error_deg: float | None = Field(
+        description="Own error of the one that ranks next."
+    )
     runner_up_unit_rms_deg: list[float | None] | None = Field(description="Its errors by unit.")
     first_group: int = Field(description="Pipelines that a paired test cannot separate.")
     tie: bool = Field(description="Whether the runner-up is tied with the best.")
     units_ahead: int | None = Field(description="Units on which the best has the lower error.")
     units_compared: int = Field(description="Units on which both were scored.")
-    finer_dataset: str | None = Field(
+    partial_dataset: str | None = Field(
         description="Data set of the pipeline with the lowest error at 50 to 95 % availability; "
         f"null unless the best has more than {FINER:g} times its error."
     )
-    finer_extractor: str | None = Field(description="Extractor of that pipeline.")
-    finer_model: str | None = Field(description="Model of that pipeline.")
-    finer_own_deg: float | None = Field(description="Its own error, degrees.")
-    finer_over_bound: float | None = Field(description="Unit 0: its RMS divided by the bound.")
-    finer_availability: float | None = Field(description="Availability of that pipeline.")
+    partial_extractor: str | None = Field(description="Extractor of that pipeline.")
+    partial_model: str | None = Field(description="Model of that pipeline.")
+    partial_own_error_deg: float | None = Field(description="Its own error, degrees.")
+    partial_over_bound: float | None = Field(description="Unit 0: its RMS divided by the bound.")
+    partial_availability: float | None = Field(description="Availability of that pipeline.")
 
 
 class Architectures(Listing):

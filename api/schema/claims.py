@@ -73,7 +73,7 @@ class Claims(Listing):
 class ClaimLine(Shape):
     """A line of a claim's plot."""
 
-    across: list[float | str] = Field(description="Horizontal positions.")
+    x: list[float | str] = Field(description="Horizontal positions.")
     median: list[float | None] = Field(description="Median of the trials.")
     low: list[float | None] = Field(description="Minimum of the trials.")
     high: list[float | None] = Field(description="Maximum of the trials.")
@@ -97,8 +97,8 @@ class ClaimDetail(Claim):
     how_to_test: str = Field(description="Test plan.")
     values: dict[str, list[float | None]] = Field(description="By criterion and trial.")
     second_values: dict[str, list[float | None]] = Field(description="The same, second method.")
-    across: str = Field(description="Horizontal axis.")
-    up: str = Field(description="Vertical axis.")
+    x_label: str = Field(description="Horizontal axis.")
+    y_label: str = Field(description="Vertical axis.")
     lines: dict[str, ClaimLine] = Field(description="Lines of the plot, by name.")
 
 

@@ -69,21 +69,21 @@ class PartialPipeline(Shape):
 class FinerPipeline(PartialPipeline):
     """A pipeline with a much lower own error."""
 
-    own_deg: float = Field(description="Own error: geometric mean over sensor units.")
+    own_error_deg: float = Field(description="Own error: geometric mean over sensor units.")
 
 
 class FinerThere(PartialPipeline):
     """A pipeline with a much lower error of unit 0 under a condition."""
 
-    charged_deg: float = Field(description="Unit 0 RMS, over all answers.")
+    rms_all_answers_deg: float = Field(description="Unit 0 RMS, over all answers.")
 
 
 class ConditionError(Shape):
     """Error of unit 0 under a condition; own errors are over all units, under the first."""
 
-    charged_deg: float | None = Field(description="Unit 0 RMS, over all answers.")
+    rms_all_answers_deg: float | None = Field(description="Unit 0 RMS, over all answers.")
     availability: float | None
-    finer: FinerThere | None = Field(
+    partial_answer: FinerThere | None = Field(
         description="Pipeline of the architecture with the lowest error under this condition at "
         f"50 % availability or more; null unless the error is more than {FINER:g} times as large."
     )
@@ -107,8 +107,8 @@ class ComparedRow(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used it on such a sensor.")
-    own_deg: float | None = Field(description="Own error; of unit 0 under later conditions.")
-    over_least: float | None = Field(description="Own error over the lowest compared.")
+    own_error_deg: float | None = Field(description="Own error; of unit 0 under later conditions.")
+    ratio_to_smallest: float | None = Field(description="Own error over the lowest compared.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
@@ -116,7 +116,9 @@ class ComparedRow(Shape):
     low_deg: float | None = Field(description="Smallest error over units.")
     high_deg: float | None = Field(description="Largest error over units.")
     availability: float | None
-    false_sun: float | None = Field(description="Share of unobservable samples answered.")
+    false_detection_rate: float | None = Field(
+        description="Share of unobservable samples answered."
+    )
     latency_us: float | None = Field(description="Time per sample, microseconds.")
     time_ratio: float | None = Field(description="The same divided by that of the reference loop.")
     needed_poses: int | None = Field(description="Poses to be within 10 % of the error floor.")
@@ -128,7 +130,7 @@ class ComparedRow(Shape):
     rank: int | None = Field(description="Rank on the leaderboard of the data set and condition.")
     status: Literal["ok", "refused", "failed", "none"]
     reason: str | None = Field(description="Reason for a missing score.")
-    finer: FinerPipeline | None = Field(
+    partial_answer: FinerPipeline | None = Field(
         description="Pipeline of the architecture with the lowest error at 50 to 95 % "
         f"availability; null unless the error is more than {FINER:g} times as large."
     )

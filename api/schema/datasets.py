@@ -49,7 +49,7 @@ class Dataset(OpenShape):
     bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
     description: str
     follows: list[str] = Field(description="Studies that the sensor is based on.")
-    stands_for: StandsFor = Field(description="Built sensors, or reason for an idealisation.")
+    represents: StandsFor = Field(description="Built sensors, or reason for an idealisation.")
     splits: Splits = Field(description="Samples of each split.")
     preview: str = Field(description="Address of its picture.")
     setups: dict[str, dict[str, Any]] = Field(description="Descriptions of the conditions.")

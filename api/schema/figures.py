@@ -143,7 +143,7 @@ class PairRow(Shape):
     reason: str = Field(description="Reason why the pair is impossible.")
     unknown: list[str] = Field(description="Studies of which one value is unknown.")
     pipelines: int = Field(description="Number of measured pipelines.")
-    best_own_deg: float | None = Field(description="Lowest own error measured.")
+    best_own_error_deg: float | None = Field(description="Lowest own error measured.")
     best_dataset: str = Field(description="Data set of the pipeline with that error.")
     best_extractor: str = Field(description="Its extractor.")
     best_model: str = Field(description="Its model.")

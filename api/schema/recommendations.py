@@ -39,7 +39,7 @@ class Measured(Shape):
     model: str
     condition: str = Field(description="Condition with the largest error.")
     field_deg: float | None = Field(description="Full field of view of the error.")
-    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_low_deg: float | None = Field(description="Own error less two standard errors.")
     own_high_deg: float | None = Field(description="Own error plus two standard errors.")
     on_bench_deg: float | None = Field(description="Error on your bench, at the confidence.")
@@ -134,9 +134,9 @@ class Contradiction(Shape):
     dataset: str
     condition: str
     first: str = Field(description="Calibration that most studies used, or that is advised.")
-    first_own_deg: float = Field(description="Its own error, degrees.")
+    first_own_error_deg: float = Field(description="Its own error, degrees.")
     other: str = Field(description="Calibration with the smallest own error there.")
-    other_own_deg: float = Field(description="Its own error, degrees.")
+    other_own_error_deg: float = Field(description="Its own error, degrees.")
     studies: int = Field(description="Number of studies that used the first.")
     ratio: float | None = Field(description="First error over the other.")
     sentence: str = Field(description="The comparison in words.")

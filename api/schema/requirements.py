@@ -89,7 +89,7 @@ class Requirements(OfEdition):
     max_mass_g: Number = Field(None, gt=0, le=1e6, description="Maximum mass, grams.")
     max_power_mw: Number = Field(None, gt=0, le=1e6, description="Maximum power, mW.")
     min_rate_hz: Number = Field(None, gt=0, le=1e9, description="Minimum rate, Hz.")
-    survive: Several[words.Hazard] = several(
+    tolerate: Several[words.Hazard] = several(
         "Conditions to tolerate: a data set must test each, with sufficient "
         "availability and within the maximum error."
     )

@@ -52,12 +52,16 @@ class Score(Place):
     status: Literal["ok", "refused", "failed"]
     reason: str = Field(description="Reason for a missing score; empty otherwise.")
     rms_deg: float | None = Field(description="RMS over answers to observable samples.")
-    charged_deg: float | None = Field(description="RMS over all answers; own errors' basis.")
+    rms_all_answers_deg: float | None = Field(
+        description="RMS over all answers; own errors' basis."
+    )
     aligned_deg: float | None = Field(description="RMS error after boresight alignment.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     bound_unit_deg: float | None = Field(description="Bound for a unit known by references.")
     availability: float | None = Field(description="Share of observable samples answered.")
-    false_sun: float | None = Field(description="Share of unobservable samples answered.")
+    false_detection_rate: float | None = Field(
+        description="Share of unobservable samples answered."
+    )
     dataset_version: int = Field(description="Version of the data set.")
     unit: int = Field(description="Sensor unit; 0 is the standard unit.")
     detector: str
@@ -124,7 +128,9 @@ class Rank(OpenShape):
 class LeaderboardRow(Score, Rank):
     """A score with its rank."""
 
-    own_deg: float | None = Field(None, description="Geometric mean of `charged_deg` over units.")
+    own_error_deg: float | None = Field(
+        None, description="Geometric mean of `rms_all_answers_deg` over units."
+    )
     own_se: float | None = Field(None, description="Relative standard error of the own error.")
     on_bench_deg: float | None = Field(None, description="Error expected on the standard bench.")
     on_bench_basis: Literal["measured", "estimated"] | None = Field(

@@ -45,8 +45,8 @@ def detail(entry: Entry) -> dict[str, Any]:
         "how_to_test": entry.claim.how_to_test,
         "values": dict(outcome.values) if outcome else {},
         "second_values": dict(outcome.second) if outcome else {},
-        "across": entry.claim.across,
-        "up": entry.claim.up,
+        "x_label": entry.claim.x_label,
+        "y_label": entry.claim.y_label,
         "lines": {name: asdict(line) for name, line in outcome.lines.items()} if outcome else {},
     }
 

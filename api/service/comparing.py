@@ -11,20 +11,37 @@ from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem, Violation
 from benchmark.leaderboard.architectures import architectures as best_of_each
-from benchmark.leaderboard.partial_answers import PartialAnswer, finer_for
+from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_answer
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest_name
 
 _SCORE = (
-    *("dataset", "condition", "extractor", "model", "studies", "own_deg", "low_deg", "high_deg"),
+    *(
+        "dataset",
+        "condition",
+        "extractor",
+        "model",
+        "studies",
+        "own_error_deg",
+        "low_deg",
+        "high_deg",
+    ),
     *("unit_rms_deg", "on_bench_deg", "bound_deg", "over_bound", "over_bound_se"),
-    *("availability", "false_sun", "latency_us", "time_ratio", "half_fov_deg", "rank", "status"),
+    *(
+        "availability",
+        "false_detection_rate",
+        "latency_us",
+        "time_ratio",
+        "half_fov_deg",
+        "rank",
+        "status",
+    ),
     "reason",
 )
 _CURVE = ("needed_poses", "needed_low", "needed_high", "poses", "floor_error_deg")
 _NAMED = ("dataset", "extractor", "model")
-_FINER = (*_NAMED, "own_deg", "availability")
-_OF_CONDITION = ("charged_deg", "availability")
+_FINER = (*_NAMED, "own_error_deg", "availability")
+_OF_CONDITION = ("rms_all_answers_deg", "availability")
 _RING = ("inner_deg", "outer_deg", "rms_deg")
 
 
@@ -77,8 +94,8 @@ def compare_pipelines(
         members of its learning curve are None for a pipeline without a curve (most have none).
         ``conditions`` holds the error of unit 0 and its availability by condition, ``rings`` that
         error by angle from the boresight. Undefined numbers are None; ``reason`` says why a
-        pipeline has no score. ``over_least`` is its own error divided by the smallest compared.
-        ``finer`` is for architectures only, and None here.
+        pipeline has no score. ``ratio_to_smallest`` is its own error over the smallest
+        compared. ``partial_answer`` is for architectures only, and None here.
 
     Raises
     ------
@@ -117,9 +134,10 @@ def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dic
     dict
         As `compare_pipelines`, but ``dataset`` and ``condition`` are None: each item has its own
         data set, the one with the smallest error if an architecture has several. Fields of view
-        differ (``half_fov_deg``); ``rings`` compare at equal angles. ``finer`` is a pipeline below
-        the availability limit that is far more accurate on the samples it answers, or None
-        (`benchmark.leaderboard.partial_answers.finer_for`); each condition has its own.
+        differ (``half_fov_deg``); ``rings`` compare at equal angles. ``partial_answer`` is a
+        pipeline below the availability limit that is far more accurate on the samples it
+        answers, or None (`benchmark.leaderboard.partial_answers.better_partial_answer`); each
+        condition has its own.
 
     Raises
     ------
@@ -159,7 +177,7 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
             "reason": without,
             "conditions": {},
             "rings": [],
-            "finer": None,
+            "partial_answer": None,
         }
     wanted = f"{best['extractor']}{SEPARATOR}{best['model']}"
     board = known.measurements.board_rows(best["dataset"])
@@ -167,21 +185,21 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
     item = _item(known, rows, known.measurements.presets[best["dataset"]].conditions[0])
     for condition, scored in item["conditions"].items():
         others = [row for row in board if row["condition"] == condition and _name(row) != wanted]
-        scored["finer"] = _finer(others, scored["charged_deg"])
-    finer = {name: best[f"finer_{name}"] for name in _FINER}
-    return {**item, "finer": None if finer["dataset"] is None else finer}
+        scored["partial_answer"] = _finer(others, scored["rms_all_answers_deg"])
+    finer = {name: best[f"partial_{name}"] for name in _FINER}
+    return {**item, "partial_answer": None if finer["dataset"] is None else finer}
 
 
 def _finer(rows: Sequence[Mapping[str, Any]], error_deg: float | None) -> dict[str, Any] | None:
     """Return the pipeline with an error far below a given one, at lower availability."""
     if error_deg is None:
         return None
-    found = finer_for(
+    found = better_partial_answer(
         error_deg,
         [
-            PartialAnswer(row["charged_deg"], row["availability"] or 0.0, row)
+            PartialAnswer(row["rms_all_answers_deg"], row["availability"] or 0.0, row)
             for row in rows
-            if row["charged_deg"] is not None
+            if row["rms_all_answers_deg"] is not None
         ],
     )
     if found is None:
@@ -213,10 +231,10 @@ def _item(
         **{name: row[name] for name in _SCORE},
         **{name: curve.get(name) for name in _CURVE},
         "conditions": {
-            name: {**{what: scored[what] for what in _OF_CONDITION}, "finer": None}
+            name: {**{what: scored[what] for what in _OF_CONDITION}, "partial_answer": None}
             for name, scored in rows.items()
         },
-        "finer": None,
+        "partial_answer": None,
         "rings": _rings(row),
     }
 
@@ -234,10 +252,10 @@ def _rings(row: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def _with_ratio(items: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Add to each item its own error divided by the smallest of them."""
-    least = min((i["own_deg"] for i in items if i["own_deg"] is not None), default=None)
+    least = min((i["own_error_deg"] for i in items if i["own_error_deg"] is not None), default=None)
     for item in items:
-        error = item["own_deg"]
-        item["over_least"] = error / least if least and error is not None else None
+        error = item["own_error_deg"]
+        item["ratio_to_smallest"] = error / least if least and error is not None else None
         item.setdefault("proposed", None)
     return items
 

@@ -10,7 +10,7 @@ from benchmark.metrics.score import is_available
 if TYPE_CHECKING:
     from api.service.measurements import Measurements
 
-_RUNG = ("extractor", "model", "own_deg", "availability")
+_RUNG = ("extractor", "model", "own_error_deg", "availability")
 
 
 def ladder(own: Mapping[str, Any] | None, measurements: Measurements) -> dict[str, Any] | None:
@@ -35,11 +35,16 @@ def ladder(own: Mapping[str, Any] | None, measurements: Measurements) -> dict[st
     scored = (
         row
         for (name, at, *_), row in measurements.score_of.items()
-        if (name, at) == (dataset, condition) and row["own_deg"] is not None
+        if (name, at) == (dataset, condition) and row["own_error_deg"] is not None
     )
     best = min(
         scored,
-        key=lambda row: (not is_available(row), row["own_deg"], row["extractor"], row["model"]),
+        key=lambda row: (
+            not is_available(row),
+            row["own_error_deg"],
+            row["extractor"],
+            row["model"],
+        ),
     )
     pin = measurements.pins.get((dataset, condition, "test"))
     return {

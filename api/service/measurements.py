@@ -84,10 +84,10 @@ class Measurements:
 
     @cached_property
     def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:
-        """Score of unit 0 by data set, condition, extractor and model, with the `own_deg` there.
+        """Score of unit 0 by data set, condition, extractor and model.
 
-        That is the geometric mean over the units measured under the condition. Sensors of single
-        studies are among the data sets.
+        `own_error_deg` is the geometric mean over the units measured under the condition. Sensors
+        of single studies are among the data sets.
         """
         own = spreads(self._with_studies)
         found = {}
@@ -96,7 +96,7 @@ class Measurements:
                 continue
             cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
             place = (cell.dataset, cell.condition, cell.extractor, cell.model)
-            found[place] = {**row, "own_deg": own[cell].own_deg}
+            found[place] = {**row, "own_error_deg": own[cell].own_error_deg}
         return found
 
     @cached_property
@@ -198,7 +198,7 @@ class Measurements:
     def cards(self) -> Sequence[Row]:
         """Cards of the standard data sets, short: what a condition is in words, no parameters."""
         short = ("name", "version", "detector", "mask", "observation", "units")
-        words = ("conditions", "bounds", "description", "follows", "stands_for", "splits")
+        words = ("conditions", "bounds", "description", "follows", "represents", "splits")
         return [
             {
                 **{name: card[name] for name in (*short, *words, "preview")},

@@ -130,8 +130,8 @@ def document(
         next=next_page,
         contradictions=[
             Contradiction(
-                **{**vars(one), "first_own_deg": _digits(one.first_own_deg, 5)}
-                | {"other_own_deg": _digits(one.other_own_deg, 5)},
+                **{**vars(one), "first_own_error_deg": _digits(one.first_own_error_deg, 5)}
+                | {"other_own_error_deg": _digits(one.other_own_error_deg, 5)},
                 ratio=_digits(one.ratio, 3),
                 sentence=one.sentence,
             )
@@ -324,7 +324,7 @@ def _measured(answer: Answer, one: found_by.Calibration) -> Measured | None:
         model=pipeline.model,
         condition=own.condition,
         field_deg=own.field_deg,
-        own_deg=None if low is None else _digits(own.error_deg, 5),
+        own_error_deg=None if low is None else _digits(own.error_deg, 5),
         own_low_deg=_digits(low),
         own_high_deg=_digits(high),
         on_bench_deg=None if asked.bench_deg is None else _digits(one.judged_deg),

@@ -105,7 +105,7 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
     }
 
 
-_NUMBERS = ("status", "own_deg", "rms_deg", "bound_deg", "over_bound", "availability")
+_NUMBERS = ("status", "own_error_deg", "rms_deg", "bound_deg", "over_bound", "availability")
 
 
 def _said(item: Mapping[str, Any]) -> list[str]:
@@ -132,10 +132,10 @@ def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
     found = []
     for pipeline in resolution.strongest_pipelines:
         score = _scores(pipeline, known)[0]
-        if score["own_deg"] is not None:
+        if score["own_error_deg"] is not None:
             members = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
             found.append({"extractor": pipeline.extractor, "model": pipeline.model, **members})
-    return min(found, key=lambda score: score["own_deg"], default=None)
+    return min(found, key=lambda score: score["own_error_deg"], default=None)
 
 
 def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
@@ -176,7 +176,7 @@ def _has_words(study: Study, words: str | None) -> bool:
     return all(word in text for word in words.casefold().split())
 
 
-COMPARED = ("key", "grade", "reported_deg", "kind", "rms_deg", "own_deg", "times", "reason")
+COMPARED = ("key", "grade", "reported_deg", "kind", "rms_deg", "own_error_deg", "times", "reason")
 """Study, grade, figure as printed and of which kind, as RMS, own error here, their ratio, and why
 they may be far from each other."""
 
@@ -202,7 +202,7 @@ def compare_accuracy(known: Knowledge) -> list[dict[str, Any]]:
                 "reported_deg": reported.value_deg,
                 "kind": reported.label,
                 "rms_deg": reported.rms_deg,
-                "own_deg": own,
+                "own_error_deg": own,
                 "times": own / reported.rms_deg,
                 "reason": reason_for_score(study, known.facts)
                 or differences.get((key, "accuracy"), ""),
@@ -217,7 +217,7 @@ def say_comparison(rows: Sequence[Mapping[str, Any]]) -> str:
         return f"{len(rows)} studies report an accuracy and have a score."
     from scipy.stats import spearmanr  # noqa: PLC0415 - half a second
 
-    found = spearmanr([row["rms_deg"] for row in rows], [row["own_deg"] for row in rows])
+    found = spearmanr([row["rms_deg"] for row in rows], [row["own_error_deg"] for row in rows])
     near = sum(1.0 / SCORE_FACTOR <= row["times"] <= SCORE_FACTOR for row in rows)
     times = [row["times"] for row in rows]
     return (

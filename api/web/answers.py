@@ -12,6 +12,7 @@ from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
 from api import citations
+from api.schema.former_names import with_former_names
 from api.schema.table import csv_of
 from api.service.documents import Document, Row
 from api.service.problems import Problem, Violation
@@ -66,7 +67,7 @@ class Answer(JSONResponse):
 
     def render(self, content: Any) -> bytes:
         """Return the JSON."""
-        return to_json(content, inf_nan_mode="null")
+        return to_json(with_former_names(content), inf_nan_mode="null")
 
     def representation(self, wanted: str) -> Response:
         """Return the answer in a media type."""

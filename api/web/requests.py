@@ -16,6 +16,7 @@ from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException
 from starlette.requests import Request
 
+from api.schema.former_names import PARAMETERS
 from api.service.problems import Problem, Violation
 from calibrate.uploaded import LARGEST
 
@@ -67,7 +68,7 @@ class StrictRequest(Request):
             expected = f"at most {MOST_FIELDS} fields name=value joined by &, percent-encoded UTF-8"
             violation = Violation("query", query.decode("latin-1"), expected)
             raise Problem(400, "malformed-query", errors=[violation]) from error
-        return StrictQuery(pairs)
+        return StrictQuery([(PARAMETERS.get(name, name), value) for name, value in pairs])
 
     async def body(self) -> bytes:
         """Return the body; a `Problem` (415, 413, 408) where it is no JSON, or too long."""

@@ -48,7 +48,7 @@ class Trial:
 class Sketch:
     """How the plot's axes are scaled."""
 
-    log_across: bool = False
+    log_x: bool = False
     log_up: bool = True
 
 

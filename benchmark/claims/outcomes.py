@@ -33,7 +33,7 @@ class OutcomeError(ValueError):
 class Curve:
     """One line of the plot: places across; median and extremes over the trials, NaN for none."""
 
-    across: tuple[float | str, ...]
+    x: tuple[float | str, ...]
     median: tuple[float, ...]
     low: tuple[float, ...]
     high: tuple[float, ...]
@@ -127,7 +127,7 @@ def outcome_of_row(row: Row) -> Outcome:
         {name: _given(values) for name, values in row["second"].items()},
         {
             name: Curve(
-                tuple(line["across"]), *(_given(line[part]) for part in ("median", "low", "high"))
+                tuple(line["x"]), *(_given(line[part]) for part in ("median", "low", "high"))
             )
             for name, line in row["lines"].items()
         },
@@ -142,14 +142,14 @@ def read_outcomes(directory: Path | str = PUBLISHED) -> dict[str, Outcome]:
 
 
 class _Line(BaseModel, extra="forbid"):
-    across: list[str | float]
+    x: list[str | float]
     median: list[float | None]
     low: list[float | None]
     high: list[float | None]
 
     @model_validator(mode="after")
     def _is_of_one_length(self) -> Self:
-        if not len(self.across) == len(self.median) == len(self.low) == len(self.high):
+        if not len(self.x) == len(self.median) == len(self.low) == len(self.high):
             raise ValueError("its lists are of different lengths")
         return self
 
@@ -184,8 +184,8 @@ def _curves(claim: Claim, trials: Sequence[Trial]) -> dict[str, Curve]:
         low, median, high = np.full((3, up.shape[1]), math.nan)
         low[seen], high[seen] = np.nanmin(up[:, seen], 0), np.nanmax(up[:, seen], 0)
         median[seen] = np.nanmedian(up[:, seen], 0)
-        across = tuple(p if isinstance(p, str) else float(f"{p:.6g}") for p in places[0])
-        curves[name] = Curve(across, _numbers(median), _numbers(low), _numbers(high))
+        x = tuple(p if isinstance(p, str) else float(f"{p:.6g}") for p in places[0])
+        curves[name] = Curve(x, _numbers(median), _numbers(low), _numbers(high))
     return curves
 
 

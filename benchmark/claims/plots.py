@@ -42,12 +42,12 @@ def figure(claim: Claim, outcome: Outcome, sketch: Sketch) -> Figure:
     words = _words(outcome)
     for number, (name, line) in enumerate(outcome.lines.items()):
         _line(axes, name, line, words, number % len(_COLOURS))
-    axes.set_xlabel(claim.across)
-    axes.set_ylabel(claim.up)
+    axes.set_xlabel(claim.x_label)
+    axes.set_ylabel(claim.y_label)
     if words:
         axes.set_xticks(range(len(words)), words)
         axes.set_xlim(-0.5, len(words) - 0.5)
-    elif sketch.log_across:
+    elif sketch.log_x:
         axes.set_xscale("log")
     if sketch.log_up and _positive(outcome):
         axes.set_yscale("log")
@@ -59,22 +59,22 @@ def figure(claim: Claim, outcome: Outcome, sketch: Sketch) -> Figure:
 
 
 def _line(axes: Axes, name: str, line: Curve, words: tuple[str, ...], number: int) -> None:
-    across: Any = [words.index(str(place)) for place in line.across] if words else line.across
+    x: Any = [words.index(str(place)) for place in line.x] if words else line.x
     colour = _COLOURS[number]
     shown: dict[str, Any] = {"color": colour, "marker": _MARKS[number], "markersize": 4.0}
     if words:  # words have no order to join points by
         low, high = (np.abs(np.subtract(line.median, one)) for one in (line.low, line.high))
         shift = 0.08 * (number - 1)
-        places = np.asarray(across) + shift
+        places = np.asarray(x) + shift
         axes.errorbar(places, line.median, (low, high), label=name, linestyle="none", **shown)
         return
-    axes.plot(across, line.median, label=name, linestyle=_DASHES[number], **shown)
-    axes.fill_between(across, line.low, line.high, color=colour, alpha=0.15, linewidth=0)
+    axes.plot(x, line.median, label=name, linestyle=_DASHES[number], **shown)
+    axes.fill_between(x, line.low, line.high, color=colour, alpha=0.15, linewidth=0)
 
 
 def _words(outcome: Outcome) -> tuple[str, ...]:
     """Return the places in the order they come, where they are words."""
-    places = [place for line in outcome.lines.values() for place in line.across]
+    places = [place for line in outcome.lines.values() for place in line.x]
     if not any(isinstance(place, str) for place in places):
         return ()
     return tuple(dict.fromkeys(str(place) for place in places))

@@ -29,7 +29,7 @@ Replicate = Literal["unit", "seed"]
 
 #: Columns of the two tables.
 RULES = ("claim", "rule", "statistic", "scale", "relation", "limit", "upper", "timed")
-PLANS = ("claim", "family", "trials", "replicate", "measured_on", "across", "up", "second")
+PLANS = ("claim", "family", "trials", "replicate", "measured_on", "x_label", "y_label", "second")
 
 _Number = TypeVar("_Number", int, float)
 
@@ -91,7 +91,7 @@ class Claim:
         How many, and what differs between them.
     measured_on
         Data, sensors and methods, in words.
-    across, up
+    x_label, y_label
         Axes of the plot.
     second
         The other method that the outcome is checked by, in words; empty for none.
@@ -108,8 +108,8 @@ class Claim:
     trials: int
     replicate: Replicate
     measured_on: str
-    across: str
-    up: str
+    x_label: str
+    y_label: str
     second: str
     rules: tuple[Rule, ...]
 
@@ -169,8 +169,8 @@ def _claim(
         trials=trials,
         replicate=cast("Replicate", _one_of(plan["replicate"], Replicate, key)),
         measured_on=plan["measured_on"],
-        across=plan["across"],
-        up=plan["up"],
+        x_label=plan["x_label"],
+        y_label=plan["y_label"],
         second=plan["second"],
         rules=rules,
     )

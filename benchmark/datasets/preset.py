@@ -381,7 +381,7 @@ class Preset:
             "units": self.units,
             "description": self.description,
             "follows": list(self.follows),
-            "stands_for": hardware_match(self.name).card(),
+            "represents": hardware_match(self.name).card(),
             "geometry": geometry,
             "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
             "parameters": shared,

@@ -127,13 +127,13 @@ def leaders(scores: Iterable[Mapping[str, Any]], conditions: Mapping[str, str]) 
     for row in scores:
         place = row["dataset"], row["extractor"], row["model"]
         if row["condition"] == conditions.get(row["dataset"]):
-            errors.setdefault(place, []).append(row["charged_deg"])
+            errors.setdefault(place, []).append(row["rms_all_answers_deg"])
             if row["unit"] == 0 and row["rms_deg"] is not None:
                 standard[place] = dict(row)
     best: dict[str, tuple[Any, Row]] = {}
     for (name, *pipeline), row in standard.items():
         own = _own_deg(errors[name, pipeline[0], pipeline[1]])
-        place_of = order({**row, "charged_deg": own}, pipeline)
+        place_of = order({**row, "rms_all_answers_deg": own}, pipeline)
         if name not in best or place_of < best[name][0]:
             best[name] = place_of, row
     return {name: best[name][1] for name in sorted(best)}

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from benchmark.leaderboard.partial_answers import PartialAnswer, finer_for
+from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_answer
 from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.score import is_available
 
@@ -20,13 +20,13 @@ Row = Mapping[str, Any]
 #: Members that are those of the best pipeline's score.
 _OF_SCORE = (
     *("dataset", "half_fov_deg", "extractor", "model", "studies", "rms_deg", "bound_deg"),
-    *("own_deg", "own_se", "on_bench_deg", "on_bench_basis", "over_bound", "over_bound_se"),
+    *("own_error_deg", "own_se", "on_bench_deg", "on_bench_basis", "over_bound", "over_bound_se"),
     *("bound_unit_deg", "over_bound_unit", "availability", "unit_rms_deg"),
 )
-#: Members of a pipeline that errs far less on what it answers, named `finer_...`.
-_OF_FINER = ("dataset", "extractor", "model", "own_deg", "over_bound", "availability")
+#: Members of a pipeline that errs far less on what it answers, named `partial_...`.
+_OF_FINER = ("dataset", "extractor", "model", "own_error_deg", "over_bound", "availability")
 #: Members of the runner-up, named `runner_up_...`.
-_OF_RUNNER_UP = ("extractor", "model", "own_deg", "unit_rms_deg")
+_OF_RUNNER_UP = ("extractor", "model", "own_error_deg", "unit_rms_deg")
 
 
 def architectures(board: Board) -> list[dict[str, Any]]:
@@ -40,18 +40,20 @@ def architectures(board: Board) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        By detector and mask: ``detector``, ``mask``, ``datasets`` (those compared), the best
-        pipeline's ``dataset``, names, ``studies`` that used it, ``half_fov_deg``, ``own_deg`` with
-        its relative standard error ``own_se``, its error on a bench, and its score on the standard
-        unit (null where nothing has an error); ``quoted_deg``, the error on the odd units of what
-        errs least on the even ones, data set and pipeline; ``others_low_deg`` and
-        ``others_high_deg``, its smallest and largest error on the units other than the standard
-        one (null where one of them gives none); the pipeline that ranks next on the same data set,
-        twins aside, as ``runner_up_...``; ``tie`` (whether the board does not tell it apart) and
-        ``first_group`` (how many it does not); on how many of ``units_compared`` units the best
-        errs less, ``units_ahead``; and as ``finer_...`` the pipeline that errs least of those that
-        answer half of the samples or more but too seldom to rank first, where the best errs far
-        more (`benchmark.leaderboard.partial_answers.finer_for`).
+        By detector and mask: ``detector``, ``mask``, ``datasets`` (those compared), the
+        best pipeline's ``dataset``, names, ``studies`` that used it, ``half_fov_deg``,
+        ``own_error_deg`` with its relative standard error ``own_se``, its error on a bench,
+        and its score on the standard unit (null where nothing has an error);
+        ``quoted_deg``, the error on the odd units of what errs least on the even ones, data
+        set and pipeline; ``others_low_deg`` and ``others_high_deg``, its smallest and
+        largest error on the units other than the standard one (null where one of them gives
+        none); the pipeline that ranks next on the same data set, twins aside, as
+        ``runner_up_...``; ``tie`` (whether the board does not tell it apart) and
+        ``first_group`` (how many it does not); on how many of ``units_compared`` units the
+        best errs less, ``units_ahead``; and as ``partial_...`` the pipeline that errs least
+        of those that answer half of the samples or more but too seldom to rank first, where
+        the best errs far more
+        (`benchmark.leaderboard.partial_answers.better_partial_answer`).
     """
     by: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for dataset in board["datasets"]:
@@ -94,14 +96,14 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         **{f"runner_up_{name}": next_one.get(name) for name in _OF_RUNNER_UP},
         "first_group": sum(row["group"] == 1 for row in leading),
         **_tie(best, next_one),
-        **{f"finer_{name}": finer.get(name) for name in _OF_FINER},
+        **{f"partial_{name}": finer.get(name) for name in _OF_FINER},
     }
 
 
 def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
     """Return the error on the odd units of what errs least on the even ones; None for one unit."""
     candidates = [
-        (even.own_deg, odd.own_deg)
+        (even.own_error_deg, odd.own_error_deg)
         for rows in ranked
         for row in rows
         if row["group"] is not None and is_available(row)
@@ -111,7 +113,7 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
                 UnitErrors(tuple(row["unit_rms_deg"][1::2])),
             )
         ]
-        if even.own_deg is not None and odd.own_deg is not None
+        if even.own_error_deg is not None and odd.own_error_deg is not None
     ]
     return min(candidates)[1] if candidates else None
 
@@ -119,18 +121,18 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
 def _finer(best: Row, ranked: Sequence[Sequence[Row]]) -> Row:
     """Return what errs far less than the best, answering seldom; nothing where nothing does."""
     seldom = (
-        PartialAnswer(row["own_deg"], row["availability"] or 0.0, row)
+        PartialAnswer(row["own_error_deg"], row["availability"] or 0.0, row)
         for rows in ranked
         for row in rows
         if not is_available(row)
     )
-    found = finer_for(best["own_deg"], seldom)
+    found = better_partial_answer(best["own_error_deg"], seldom)
     return {} if found is None else found.subject
 
 
 def _order(row: Row) -> tuple[bool, bool, float, str, str]:
     alone = row["group"] is None
-    return not is_available(row), alone, row["own_deg"], row["extractor"], row["model"]
+    return not is_available(row), alone, row["own_error_deg"], row["extractor"], row["model"]
 
 
 def _tie(best: Row, runner_up: Row) -> dict[str, Any]:

@@ -32,9 +32,9 @@ def on_bench(rows: Iterable[Row]) -> dict[Cell, float]:
     """
     squares: dict[Cell, list[float]] = {}
     for row in rows:
-        if row["condition"] == ON_BENCH and row["charged_deg"] is not None:
+        if row["condition"] == ON_BENCH and row["rms_all_answers_deg"] is not None:
             cell = Cell(row["dataset"], "nominal", row["extractor"], row["model"])
-            squares.setdefault(cell, []).append(row["charged_deg"] ** 2)
+            squares.setdefault(cell, []).append(row["rms_all_answers_deg"] ** 2)
     return {
         cell: math.sqrt(math.fsum(found) / len(found))
         for cell, found in squares.items()
@@ -43,7 +43,7 @@ def on_bench(rows: Iterable[Row]) -> dict[Cell, float]:
 
 
 def expected_on_bench(
-    own_deg: float | None, bench_deg: float | None, measured_deg: float | None
+    own_error_deg: float | None, bench_deg: float | None, measured_deg: float | None
 ) -> dict[str, Any]:
     """Return ``on_bench_deg`` and ``on_bench_basis`` of a pipeline.
 
@@ -52,9 +52,12 @@ def expected_on_bench(
     """
     if measured_deg is not None:
         return {"on_bench_deg": store(measured_deg), "on_bench_basis": "measured"}
-    if own_deg is None or bench_deg is None:
+    if own_error_deg is None or bench_deg is None:
         return {"on_bench_deg": None, "on_bench_basis": None}
-    return {"on_bench_deg": store(math.hypot(own_deg, bench_deg)), "on_bench_basis": "estimated"}
+    return {
+        "on_bench_deg": store(math.hypot(own_error_deg, bench_deg)),
+        "on_bench_basis": "estimated",
+    }
 
 
 def twins_of(rows: Iterable[Row]) -> dict[tuple[str, str, str], str]:
@@ -73,7 +76,7 @@ def twins_of(rows: Iterable[Row]) -> dict[tuple[str, str, str], str]:
     for row in rows:
         place = row["dataset"], row["extractor"]
         numbers = tuple(row[name] for name in METRICS)
-        if row["charged_deg"] is not None:
+        if row["rms_all_answers_deg"] is not None:
             of_model = scores.setdefault(place, {}).setdefault((row["extractor"], row["model"]), {})
             of_model[row["condition"], row["unit"]] = numbers
     found = {}

@@ -70,7 +70,7 @@ def build(
         the score row of the standard unit with ``rank`` (null where there is no error), ``group``
         (1 for what is not distinguished from the leader), ``tied`` (whether others share the rank),
         ``best_of_extractor`` (whether no other pipeline of its extractor ranks before it there),
-        ``own_deg`` (geometric mean over units of the error over all answers), ``own_se`` (its
+        ``own_error_deg`` (geometric mean over units of the error over all answers), ``own_se`` (its
         relative standard error), the errors of all units ``unit_rms_deg`` and their range
         ``low_deg`` to ``high_deg`` (null where one unit is scored), ``on_bench_deg`` and
         ``on_bench_basis`` (measured on drawn benches, or estimated), ``twin_of`` (a pipeline with
@@ -99,14 +99,14 @@ def build(
                     "group": found.places[at].group,
                     "tied": found.places[at].tied,
                     **board[at],
-                    "own_deg": known[at].own_deg,
+                    "own_error_deg": known[at].own_error_deg,
                     "own_se": known[at].own_se,
                     "studies": list((studied or {}).get(_used(board[at]), ())),
                     "unit_rms_deg": list(known[at].errors_deg),
                     "low_deg": known[at].low_deg,
                     "high_deg": known[at].high_deg,
                     **expected_on_bench(
-                        known[at].own_deg, bench_deg, benches.get(_cell(board[at]))
+                        known[at].own_error_deg, bench_deg, benches.get(_cell(board[at]))
                     ),
                     "twin_of": twins.get((*_used(board[at])[2:], name)),
                     **times.columns_of(name, *_used(board[at])[2:]),
@@ -162,13 +162,13 @@ def _facts(name: str, found: RankedBoard, pin: Pin | None, rows: Sequence[Row]) 
 
 def _with_folded(ranked: Sequence[Row]) -> list[dict[str, Any]]:
     """Say of each ranked row of a board whether it is too far behind to be shown unasked."""
-    first = next((row["own_deg"] for row in ranked if row["own_deg"]), None)
+    first = next((row["own_error_deg"] for row in ranked if row["own_error_deg"]), None)
     return [
         {
             **row,
-            "folded": row["own_deg"] is None
-            or row["own_deg"] > HOPELESS_DEG
-            or (first is not None and row["own_deg"] > BEHIND * first),
+            "folded": row["own_error_deg"] is None
+            or row["own_error_deg"] > HOPELESS_DEG
+            or (first is not None and row["own_error_deg"] > BEHIND * first),
         }
         for row in ranked
     ]
@@ -283,7 +283,9 @@ def _kept_field(row: Row, largest_deg: float) -> int | None:
 
 
 def _by_field(row: Row) -> tuple[Any, ...]:
-    return order({**row, "charged_deg": row["field_rms_deg"]}, (row["extractor"], row["model"]))
+    return order(
+        {**row, "rms_all_answers_deg": row["field_rms_deg"]}, (row["extractor"], row["model"])
+    )
 
 
 def _by_error(row: Row) -> tuple[Any, ...]:

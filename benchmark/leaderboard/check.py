@@ -191,7 +191,7 @@ def compare_scores(
 def _close(column: str, one: Any, other: Any, measured: Row, samples: int) -> bool:
     if column not in METRICS or one is None or other is None or one == other:
         return bool(one == other)
-    if column in ("availability", "false_sun"):
+    if column in ("availability", "false_detection_rate"):
         allowed = _SAMPLES_TOLERANCE / samples
     elif column.startswith("bias_"):  # a mean near zero is as uncertain as the spread it averages
         allowed = RELATIVE_TOLERANCE * (measured["rms_deg"] or 0.0)

@@ -114,13 +114,15 @@ def score_fresh_units(
 
 
 def _ranks(row: Row | None) -> bool:
-    return row is not None and row["charged_deg"] is not None and is_available(row)
+    return row is not None and row["rms_all_answers_deg"] is not None and is_available(row)
 
 
 def _logs(cells: Sequence[Cell], scores: Mapping[Cell, Row], units: Iterable[int]) -> np.ndarray:
     errors = [
         [
-            scores.get(replace(cell, unit=unit), {"charged_deg": None})["charged_deg"]
+            scores.get(replace(cell, unit=unit), {"rms_all_answers_deg": None})[
+                "rms_all_answers_deg"
+            ]
             for unit in units
         ]
         for cell in cells

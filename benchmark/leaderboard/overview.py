@@ -70,7 +70,12 @@ def overview(board: Board) -> dict[str, Any]:
                 best[place] = min((r for r in (known, ratio) if r is not None), default=None)
         front = min(
             (row for row in rows if row["rank"] is not None),
-            key=lambda row: (not is_available(row), row["rank"], row["own_deg"], row["extractor"]),
+            key=lambda row: (
+                not is_available(row),
+                row["rank"],
+                row["own_error_deg"],
+                row["extractor"],
+            ),
             default=None,
         )
         leading = {(role, part) for role, part, _ in _parts(front)} if front else set()

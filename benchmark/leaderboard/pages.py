@@ -27,7 +27,7 @@ Row = Mapping[str, Any]
 PAGE = "leaderboard.md"
 
 _TEMPLATES = Path(__file__).parent / "templates"
-_SHARES = ("availability", "false_sun")
+_SHARES = ("availability", "false_detection_rate")
 
 #: Columns of the Markdown and HTML tables; the JSON and CSV files have all.
 SHOWN = {
@@ -36,7 +36,7 @@ SHOWN = {
     "model": "Model",
     "best_of_extractor": "Best of extractor",
     "studies": "Studies",
-    "own_deg": "Own error (deg)",
+    "own_error_deg": "Own error (deg)",
     "units": "Units (deg)",
     "on_bench_deg": "On a bench (deg)",
     "rms_deg": "RMS, standard unit (deg)",
@@ -49,10 +49,18 @@ SHOWN = {
     "bound_unit_deg": "Bound, unit unknown (deg)",
     "over_bound_unit": "RMS / that",
     "availability": "Answered",
-    "false_sun": "False Suns",
+    "false_detection_rate": "False Suns",
 }
 _BEST = (
-    *("best_of_extractor", "studies", "rank", "own_deg", "units", "on_bench_deg", "over_bound"),
+    *(
+        "best_of_extractor",
+        "studies",
+        "rank",
+        "own_error_deg",
+        "units",
+        "on_bench_deg",
+        "over_bound",
+    ),
     *("repeatability_deg", *_SHARES),
 )
 #: Pipelines that are not the best of their extractor are on the page down to this rank.

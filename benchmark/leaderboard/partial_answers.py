@@ -48,7 +48,9 @@ class PartialAnswer(Generic[Of]):
         return self.coarse_deg < error_deg < math.inf
 
 
-def finer_for(error_deg: float, partly: Iterable[PartialAnswer[Of]]) -> PartialAnswer[Of] | None:
+def better_partial_answer(
+    error_deg: float, partly: Iterable[PartialAnswer[Of]]
+) -> PartialAnswer[Of] | None:
     """Return the most accurate partial answer, if it is far more accurate than a given error.
 
     Parameters

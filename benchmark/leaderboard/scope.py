@@ -88,7 +88,7 @@ def followers(
         preset = parts.presets[dataset]
         board = list(group)
         ranked = sorted(
-            (cell for cell in board if scores[cell]["charged_deg"] is not None),
+            (cell for cell in board if scores[cell]["rms_all_answers_deg"] is not None),
             key=lambda cell: order(scores[cell], cell),
         )
         leading = ranked[:LEADING]
@@ -128,7 +128,7 @@ def _units(ranked: list[Cell], scores: Mapping[Cell, Row]) -> Iterator[tuple[Cel
     room = {UNITS: MOST, UNITS_BEHIND: MOST}
     for cell in ranked:
         if is_available(scores[cell]) == is_available(first):
-            times = scores[cell]["charged_deg"] / first["charged_deg"]
+            times = scores[cell]["rms_all_answers_deg"] / first["rms_all_answers_deg"]
             number = UNITS if times <= CLOSE and room[UNITS] else UNITS_BEHIND
             if times <= BEHIND and room[number]:
                 room[number] -= 1

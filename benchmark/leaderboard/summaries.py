@@ -58,7 +58,7 @@ def _architecture(row: Row) -> Sequence[str]:
         f"{row['detector']}, {row['mask']}",
         f"{row['extractor']} + {row['model']}{_finer(row)}",
         row["dataset"] + (f" (of {several})" if several > 1 else ""),
-        f"{digits(row['own_deg'])}{'=' if row['tie'] else ''}"
+        f"{digits(row['own_error_deg'])}{'=' if row['tie'] else ''}"
         + ("" if error is None else f" ± {100 * error:.1f} %"),
         digits(row["quoted_deg"]),
         digits(row["on_bench_deg"]),
@@ -70,11 +70,12 @@ def _architecture(row: Row) -> Sequence[str]:
 
 def _finer(row: Row) -> str:
     """Name the pipeline with a lower error at lower availability."""
-    if row["finer_extractor"] is None:
+    if row["partial_extractor"] is None:
         return ""
+    error = digits(row["partial_own_error_deg"])
     return (
-        f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_own_deg'])} deg at "
-        f"{100 * row['finer_availability']:.0f} % availability)"
+        f" ({row['partial_extractor']} + {row['partial_model']}: {error} deg at "
+        f"{100 * row['partial_availability']:.0f} % availability)"
     )
 
 

@@ -18,7 +18,7 @@ Row = Mapping[str, Any]
 #: Pipelines of a board, each with another model.
 LEADING = 3
 #: Numbers that twins share.
-_SHARED = ("charged_deg", "median_deg", "max_deg", "availability")
+_SHARED = ("rms_all_answers_deg", "median_deg", "max_deg", "availability")
 
 
 @dataclass(frozen=True, order=True)
@@ -63,7 +63,7 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
         if (
             row["condition"] == conditions.get(row["dataset"])
             and row["unit"] == 0
-            and row["charged_deg"] is not None
+            and row["rms_all_answers_deg"] is not None
             and is_available(row)
         ):
             boards.setdefault(row["dataset"], []).append(row)
@@ -71,7 +71,8 @@ def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader
     for name in sorted(boards):
         best: dict[str, Row] = {}
         for row in sorted(
-            boards[name], key=lambda row: (row["charged_deg"], row["extractor"], row["model"])
+            boards[name],
+            key=lambda row: (row["rms_all_answers_deg"], row["extractor"], row["model"]),
         ):
             best.setdefault(row["model"], row)
         others = {tuple(row[name] for name in _SHARED): row for row in reversed(best.values())}

@@ -48,7 +48,7 @@ class UnitErrors:
         return len(self.errors_deg) > 1 and None not in self.errors_deg
 
     @property
-    def own_deg(self) -> float | None:
+    def own_error_deg(self) -> float | None:
         """Geometric mean over units; None where none gives an error."""
         logs = [math.log(max(error, _LEAST_DEG)) for error in self.known_deg]
         return store(math.exp(math.fsum(logs) / len(logs))) if logs else None
@@ -120,7 +120,7 @@ def order(numbers: Row, identity: object) -> tuple[Any, ...]:
     By error over all answers; those that answer fewer than 95 % of the observable samples come
     behind all others, those without an error last. `identity` decides between equals.
     """
-    error = numbers["charged_deg"]
+    error = numbers["rms_all_answers_deg"]
     return (error is None, not is_available(numbers), error or 0.0, identity)
 
 
@@ -129,7 +129,7 @@ def spreads(rows: Iterable[Row]) -> dict[Cell, UnitErrors]:
     errors: dict[Cell, dict[int, float | None]] = {}
     for row in rows:
         cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
-        errors.setdefault(cell, {})[row["unit"]] = row["charged_deg"]
+        errors.setdefault(cell, {})[row["unit"]] = row["rms_all_answers_deg"]
     return {
         cell: UnitErrors(tuple(by_unit[unit] for unit in sorted(by_unit)))
         for cell, by_unit in errors.items()
@@ -149,7 +149,7 @@ def own_errors(rows: Iterable[Row]) -> dict[tuple[str, str, str, str], float | N
         if row["unit"] == 0 and row["status"] == "ok"
     }
     places = {
-        (cell.dataset, cell.condition, cell.extractor, cell.model): errors.own_deg
+        (cell.dataset, cell.condition, cell.extractor, cell.model): errors.own_error_deg
         for cell, errors in spreads(known).items()
     }
     return {place: own if place in scored else None for place, own in places.items()}
@@ -184,7 +184,7 @@ def rank_board(rows: Sequence[Row], spread: Sequence[UnitErrors]) -> RankedBoard
     behind = 1 + max(groups.values(), default=0)
 
     def key(at: int) -> tuple[Any, ...]:
-        row, own = rows[at], spread[at].own_deg
+        row, own = rows[at], spread[at].own_error_deg
         nothing = own is None or row["rms_deg"] is None
         identity = row["extractor"], row["model"]
         return (nothing, at not in ranked, groups.get(at, behind), own or 0.0, identity)

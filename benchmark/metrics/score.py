@@ -47,10 +47,10 @@ class Score:
     #: answered share of the observable samples
     availability: float
     #: answered share of the samples that are not observable
-    false_sun: float
+    false_detection_rate: float
     rms_deg: float
     #: root mean square over all answers, those to samples that are not observable among them
-    charged_deg: float
+    rms_all_answers_deg: float
     #: `rms_deg` that is left after the best rotation of all answers onto the truth
     aligned_deg: float
     median_deg: float
@@ -170,9 +170,9 @@ def score(
     alpha, beta = _axis_errors(guess[judged], truth[judged])
     return Score(
         availability=_share(answered[seen]),
-        false_sun=_share(answered[~seen]),
+        false_detection_rate=_share(answered[~seen]),
         rms_deg=_rms(error),
-        charged_deg=_rms(separation_deg(guess[answered], truth[answered])),
+        rms_all_answers_deg=_rms(separation_deg(guess[answered], truth[answered])),
         aligned_deg=_rms(aligned_error_deg(guess[judged], truth[judged])),
         median_deg=_quantile(error, 0.5),
         p95_deg=_quantile(error, 0.95),

@@ -67,7 +67,7 @@ def pipelines(
         if first is None:
             continue
         units = _unit_errors(scores, first["condition"])
-        standard = first["charged_deg"]
+        standard = first["rms_all_answers_deg"]
         share = _middle(units) / standard if len(units) > 1 and standard else 1.0
         found.append(
             MeasuredPipeline(
@@ -79,7 +79,7 @@ def pipelines(
                 model=model,
                 stages=known[model],
                 nominal=dataclasses.replace(
-                    _score(first, share), rms_deg=UnitErrors(units).own_deg
+                    _score(first, share), rms_deg=UnitErrors(units).own_error_deg
                 ),
                 hazards={
                     hazard: tuple(_score(scores[name, 0], share) for name in names)
@@ -88,7 +88,7 @@ def pipelines(
                 },
                 half_fov_deg=half_field_deg(first),
                 latency_us=(latency_us or {}).get(place),
-                unit_own_deg=units,
+                unit_own_error_deg=units,
                 unit_ratios=unit_ratios(units, spread.get(dataset, 0.0)),
                 bench_deg=(bench_deg or {}).get(dataset) or 0.0,
                 needs=needs[model],
@@ -110,9 +110,9 @@ def standard_benches(pins: Mapping[tuple[str, str, str], Pin]) -> dict[str, floa
 def _unit_errors(scores: Mapping[tuple[str, int], Row], condition: str) -> tuple[float, ...]:
     """Return the errors of all units under the first condition, the standard one first."""
     return tuple(
-        row["charged_deg"]
+        row["rms_all_answers_deg"]
         for (name, _), row in sorted(scores.items())
-        if name == condition and row["charged_deg"]
+        if name == condition and row["rms_all_answers_deg"]
     )
 
 
@@ -149,7 +149,7 @@ def _score(row: Row, share: float) -> Score:
     sensor answers them whatever part of its field is used.
     """
     half = half_field_deg(row)
-    error = row["charged_deg"]
+    error = row["rms_all_answers_deg"]
     false_suns = 0.0 if error is None else max(error**2 - row["rms_deg"] ** 2, 0.0)
     cones: list[tuple[float, float | None]] = []
     # The last ring may reach beyond the field; all its samples lie within.

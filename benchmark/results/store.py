@@ -65,7 +65,7 @@ _SCORE_COLUMNS: Mapping[str, Reader] = {
     "unit": count,
     "status": one_of(*STATUSES),
     **dict.fromkeys(METRICS, size),
-    **dict.fromkeys(("availability", "false_sun"), share),
+    **dict.fromkeys(("availability", "false_detection_rate"), share),
     **dict.fromkeys(("bias_alpha_deg", "bias_beta_deg"), number),
     "reason": str,
 }

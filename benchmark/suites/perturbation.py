@@ -70,7 +70,11 @@ class SensitiveCell:
         return not all(_neighbours(*both) for both in self.columns.values())
 
     def __str__(self) -> str:
-        name = "charged_deg" if "charged_deg" in self.columns else next(iter(self.columns))
+        name = (
+            "rms_all_answers_deg"
+            if "rms_all_answers_deg" in self.columns
+            else next(iter(self.columns))
+        )
         before, after = self.columns[name]
         return (
             f"{self.cell} ({self.inputs}): {name} {before} -> {after}, "

@@ -60,7 +60,7 @@ def method_gaps(
             instead = dict.fromkeys(
                 getattr(one, attribute).name
                 for one in ran
-                if getattr(one, attribute).stands_for == value
+                if getattr(one, attribute).replaces == value
             )
             if instead:
                 reason += f"; {_join(instead)} is used instead"

@@ -227,7 +227,7 @@ def _not_stated(
     study: Study, attribute: str, chosen: Sequence[ChosenMethod]
 ) -> Iterable[Departure]:
     """Give the departure of a method that is not mapped for a study."""
-    if not all(one.runs and not one.stands_for for one in chosen):
+    if not all(one.runs and not one.replaces for one in chosen):
         who = "the survey" if study.edition == SURVEY else "its row"
         text = f"{who} states no {attribute}, so {_names(chosen)} is chosen"
         part: Part = "extractor" if attribute == "extractor" else "model"
@@ -257,7 +257,7 @@ def _stated_departures(
     variants = [one.other_variant for one in running if one.other_variant]
     missed = [variant for variant in variants if variant.model == value]
     if not running:
-        instead = _names([one for one in chosen if one.stands_for == value])
+        instead = _names([one for one in chosen if one.replaces == value])
         text = f"its {name} is not implemented"
         text += f"; {instead} is used instead" if instead else ""
         settled = f"an implementation of {value} for this sensor"
@@ -268,7 +268,7 @@ def _stated_departures(
     elif all(one.unsaid == value for one in running):
         text = f"the kind of its {name} is chosen, {_names(running)}"
         yield Departure(part, value, text, f"what the study says of its {value}", True)
-    elif compensates and all(one.stands_for for one in running):
+    elif compensates and all(one.replaces for one in running):
         text = f"the model behind its {name} is assumed: {_names(running)}"
         settled = "the model that the study combines with this compensation"
         yield Departure("model", _BEHIND, text, settled, True)

@@ -30,10 +30,10 @@ def test_published_headers_stay_as_they_are():
     """Programs read them by name and by place."""
     heads = {
         AttributeValue: "attribute,value,basis,source,source_name,note,role,name_in_study,nearest",
-        Score: "dataset,condition,extractor,model,status,reason,rms_deg,charged_deg,aligned_deg,"
-        "bound_deg,bound_unit_deg,availability,false_sun",
+        Score: "dataset,condition,extractor,model,status,reason,rms_deg,rms_all_answers_deg,"
+        "aligned_deg,bound_deg,bound_unit_deg,availability,false_detection_rate",
         LeaderboardRow: "rank,group,tied,dataset,condition,extractor,model,status,"
-        "reason,rms_deg,charged_deg",
+        "reason,rms_deg,rms_all_answers_deg",
         ClaimRow: "id,section,section_name,study,statement,verdict,trials,explanation",
     }
     for model, head in heads.items():

@@ -17,7 +17,7 @@ MINE = {"a": 0.1, "b": 0.2, "c": 1.0, "d": 4.0, "e": 5.0}
 def scored(dataset, extractor, **errors):
     return {
         (dataset, extractor, model): {
-            "status": "ok" if rms else "unfit", "own_deg": rms, "detector": "D", "mask": "M",
+            "status": "ok" if rms else "unfit", "own_error_deg": rms, "detector": "D", "mask": "M",
         }
         for model, rms in errors.items()
     }  # fmt: skip
@@ -50,5 +50,5 @@ def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):
     rows = json.loads(said.out)
     rows = rows if isinstance(rows, list) else next(v for v in rows.values() if isinstance(v, list))
     assert {row["model"] for row in rows} == {"homography", "pinhole", "polynomial-2d", "spm"}
-    assert all(row["dataset"] and row["dataset_own_deg"] for row in rows)
+    assert all(row["dataset"] and row["dataset_own_error_deg"] for row in rows)
     assert "within a factor of" in said.err

@@ -44,7 +44,7 @@ def expanded(given: Ask) -> dict[str, Any]:
     light = "saturation" if distance < 10**-0.25 else "noise" if distance > 10**0.25 else ""
     left = {*ask.get("accuracy", CLASSES_DEG)} - {*ask.get("exclude_accuracy", ())}
     classes = [CLASSES_DEG[name] for name in left] if len(left) < 4 else [(0.0, math.inf)]
-    hazards = {*ask.get("survive", ()), light} - {""}
+    hazards = {*ask.get("tolerate", ()), light} - {""}
     return {**ask, "light": light, "hazards": hazards, "classes": classes}
 
 

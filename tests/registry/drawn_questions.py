@@ -26,7 +26,7 @@ _NUMBERS = {
 #: Of each list: how often it is asked, and its most values.
 _LISTS = {
     "task": (0.25, 2), "error": (0.1, 2), "accuracy": (0.2, 2), "detector": (0.15, 3),
-    "mask": (0.15, 3), "model": (0.12, 4), "extractor": (0.12, 4), "survive": (0.1, 2),
+    "mask": (0.15, 3), "model": (0.12, 4), "extractor": (0.12, 4), "tolerate": (0.1, 2),
     "properties": (0.06, 2), "exclude_needs": (0.1, 2),
 }  # fmt: skip
 
@@ -35,7 +35,7 @@ def drawn_questions(number: int, seed: int, facts: Facts) -> Iterator[dict[str, 
     """Yield questions, some of them empty."""
     rng = np.random.default_rng(seed)
     known = {name: facts.taxonomy.values(name) for name in ATTRIBUTES}
-    known |= {"survive": tuple(HAZARDS), "properties": tuple(facts.properties)}
+    known |= {"tolerate": tuple(HAZARDS), "properties": tuple(facts.properties)}
     known["exclude_needs"] = tuple(NEEDS)
     for _ in range(number):
         ask: dict[str, Any] = {}

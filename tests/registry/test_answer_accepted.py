@@ -142,7 +142,10 @@ def test_drawn_answers_hide_no_report_and_compare_no_two_data_sets(
             assert not any(one.place.is_built for one in found), ask
         for one in contradictions(answer):
             assert named(one.sentence, names) == {one.dataset}
-            for name, error in ((one.first, one.first_own_deg), (one.other, one.other_own_deg)):
+            for name, error in (
+                (one.first, one.first_own_error_deg),
+                (one.other, one.other_own_error_deg),
+            ):
                 half = given["min_fov_deg"] / 2 if "min_fov_deg" in given else None
                 judged = own[one.dataset, name].judge(given["hazards"], half)
                 assert (judged.error_deg, judged.condition) == (error, one.condition)
@@ -163,7 +166,7 @@ def limits(number: int, seed: int) -> Iterator[dict[str, Any]]:
         if rng.random() < 0.4:
             ask["confidence"] = float(rng.uniform(0.5, 0.99))
         if rng.random() < 0.2:
-            ask["survive"] = ["albedo"]
+            ask["tolerate"] = ["albedo"]
         yield ask
 
 

@@ -20,7 +20,7 @@ from tests.registry.drawn_questions import drawn_questions
 
 STATES = {True: "meets", False: "misses", None: "unknown"}
 STATED = ("max_error_deg", "min_fov_deg", "accuracy", "exclude_accuracy", *OF_PRODUCTS)
-SILENT = ("min_availability", "max_latency_us", "survive", "exclude_needs")
+SILENT = ("min_availability", "max_latency_us", "tolerate", "exclude_needs")
 Evidence = tuple[Sequence[Report], Sequence[tuple[float, MeasuredPipeline]]]
 
 
@@ -200,5 +200,5 @@ def _standard_error(pipelines: Sequence[tuple[float, MeasuredPipeline]]) -> floa
     if not pipelines:
         return 0.0
     _, row = min(pipelines, key=lambda found: found[0])
-    units = max(len(row.unit_own_deg), 1)
+    units = max(len(row.unit_own_error_deg), 1)
     return stdev(map(math.log, row.unit_ratios)) / math.sqrt(units)

@@ -96,14 +96,14 @@ BAD = {"albedo": (Score("bad", 0.8, availability=0.9),)}
 @pytest.mark.parametrize(
     ("ask", "hazards", "shown"),
     [
-        ({"survive": "albedo"}, BAD, 0.8),
-        ({"survive": "albedo"}, {"albedo": (Score("bad", 0.05),)}, 0.1),  # nominal is the worse
-        ({"survive": "albedo"}, {"albedo": (Score("bad", None),)}, None),
-        ({"survive": "albedo"}, {"albedo": (Score("bad", 0.2, is_available=False),)}, None),
-        ({"survive": "albedo"}, {}, None),  # no condition tries it
-        ({"survive": "albedo", "max_error_deg": 0.5}, BAD, None),
-        ({"survive": "albedo", "min_availability": 0.9}, BAD, 0.8),
-        ({"survive": "albedo", "min_availability": 0.91}, BAD, None),
+        ({"tolerate": "albedo"}, BAD, 0.8),
+        ({"tolerate": "albedo"}, {"albedo": (Score("bad", 0.05),)}, 0.1),  # nominal is the worse
+        ({"tolerate": "albedo"}, {"albedo": (Score("bad", None),)}, None),
+        ({"tolerate": "albedo"}, {"albedo": (Score("bad", 0.2, is_available=False),)}, None),
+        ({"tolerate": "albedo"}, {}, None),  # no condition tries it
+        ({"tolerate": "albedo", "max_error_deg": 0.5}, BAD, None),
+        ({"tolerate": "albedo", "min_availability": 0.9}, BAD, 0.8),
+        ({"tolerate": "albedo", "min_availability": 0.91}, BAD, None),
         ({"sun_distance_au": 3.0}, {"noise": (Score("dim", 0.3),)}, 0.3),
         ({"sun_distance_au": 1.2}, {}, 0.1),
     ],
@@ -133,7 +133,7 @@ def test_the_pipeline_that_errs_least_of_those_that_meet_is_shown(facts_of: Fact
 
 
 def test_units_within_a_limit_are_counted_and_their_share_decides(facts_of: FactsOf) -> None:
-    rows = [row(rms_deg=0.1, unit_own_deg=(0.1,) * 10, unit_ratios=(0.9,) * 8 + (1.5,) * 2)]
+    rows = [row(rms_deg=0.1, unit_own_error_deg=(0.1,) * 10, unit_ratios=(0.9,) * 8 + (1.5,) * 2)]
     for confidence, meets in ((0.8, True), (0.81, False)):
         ask = {"max_error_deg": 0.1, "confidence": confidence}
         answer = recommend(ask, rows, facts=facts_of([study(accuracy_deg=["0.1"])]))  # type: ignore[arg-type]
@@ -173,7 +173,7 @@ def test_measurements_contradict_on_one_data_set_and_condition_alone(facts_of: F
         ([row(rms_deg=0.02, **lut)], ask, 5.0),
         ([row(rms_deg=0.02, dataset="e", **lut)], ask, None),
         ([row(rms_deg=0.092, **lut)], ask, None),  # hardly differs
-        ([row(rms_deg=0.02, hazards=hot, **lut)], {**ask, "survive": "albedo"}, None),
+        ([row(rms_deg=0.02, hazards=hot, **lut)], {**ask, "tolerate": "albedo"}, None),
     ):
         found = contradictions(recommend(asked, [used, *others], facts=facts))  # type: ignore[list-item]
         assert [one.ratio for one in found] == ([] if said is None else [pytest.approx(said)])

@@ -137,7 +137,7 @@ def test_reported_and_own_errors_are_compared_worst_first() -> None:
     assert all(a >= b for a, b in pairwise(off))
     assert {row["key"] for row in rows} >= {"Soken2023", "Lin2016", "Enright2007a"}
     # Spearman's coefficient by its definition: Pearson's of the ranks, ties at their mean
-    ranks = [_ranks([row[name] for row in rows]) for name in ("rms_deg", "own_deg")]
+    ranks = [_ranks([row[name] for row in rows]) for name in ("rms_deg", "own_error_deg")]
     means = [sum(each) / len(each) for each in ranks]
     x, y = ([value - mean for value in each] for each, mean in zip(ranks, means, strict=True))
     expected = sum(a * b for a, b in zip(x, y, strict=True)) / math.sqrt(

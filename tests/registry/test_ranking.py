@@ -86,7 +86,7 @@ def test_the_measure_asked_for_orders_though_another_errs_less(
     task: str, facts_of: Callable[[list[dict[str, list[str]]]], Facts]
 ) -> None:
     facts = facts_of([{"task": [task], "detector": ["OI"], "mask": ["Slit", "Lens"]}])
-    of = {"detector": "OI", "unit_own_deg": (0.1,)}
+    of = {"detector": "OI", "unit_own_error_deg": (0.1,)}
     rows = [
         pipeline(mask="Slit", rms_deg=0.5, repeatability_deg=0.001, latency_us=2.0, **of),
         pipeline(mask="Lens", rms_deg=0.1, repeatability_deg=0.05, latency_us=90.0, **of),

@@ -112,12 +112,12 @@ def test_hazards_are_offered_less_one_and_two_that_must_go_are_named_together(
 ) -> None:
     row = pipeline(hazards={"albedo": (Score("bad", 0.3),), "spin": (Score("spinning", None),)})
     only = {"detector": "CMOS", "mask": "Slit"}
-    blocked = blocked_of({"survive": ["albedo", "spin"], **only}, [row], facts_of([STUDY]))
-    assert ({"survive": ("albedo",)}, 1) in changes(blocked)
+    blocked = blocked_of({"tolerate": ["albedo", "spin"], **only}, [row], facts_of([STUDY]))
+    assert ({"tolerate": ("albedo",)}, 1) in changes(blocked)
     assert "surviving albedo and spin" in blocked.detail
-    ask = {"survive": ["spin"], "min_fov_deg": 180.0, **only}
+    ask = {"tolerate": ["spin"], "min_fov_deg": 180.0, **only}
     both = blocked_of(ask, [row], facts_of([STUDY]))
-    assert both.constraints == ("min_fov_deg", "survive")
+    assert both.constraints == ("min_fov_deg", "tolerate")
     assert len(both.relaxations) == 1
     assert "without them 1 architecture would" in both.detail
 

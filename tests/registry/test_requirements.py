@@ -44,10 +44,10 @@ def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -
         ({"exclude_mask": ["Encodd"]}, "exclude_mask: .*did you mean 'Encoded'"),
         ({"mask": 3}, "a value of the taxonomy"),
         ({"mask": [3]}, "a value of the taxonomy"),
-        ({"survive": "albdo"}, "survive: .*did you mean 'albedo'"),
+        ({"tolerate": "albdo"}, "tolerate: .*did you mean 'albedo'"),
         ({"exclude_needs": "nadr"}, "exclude_needs: .*did you mean 'nadir'"),
         ({"properties": ["Robustnes"]}, "properties: "),
-        ({"survive": 3}, "a list of them; got 3"),
+        ({"tolerate": 3}, "a list of them; got 3"),
         ({"mission": "deep-spac"}, "mission: .*did you mean 'deep-space'"),
         ({"evidence": "mesured"}, "evidence: .*did you mean 'measured'"),
     ],
@@ -90,12 +90,12 @@ def test_numbers_are_taken_up_to_the_ends_of_their_range_and_not_beyond(
 def test_values_are_asked_once_each_in_the_order_given(survey: Facts) -> None:
     asked = parse(
         survey, mask=["Slit", "Lens", "Slit"], exclude_task=("Cost",), exclude_detector=[],
-        model=None, detector="CMOS", survive=("spin", "albedo", "spin"),
+        model=None, detector="CMOS", tolerate=("spin", "albedo", "spin"),
     )  # fmt: skip
     assert dict(asked.include) == {"mask": ("Slit", "Lens"), "detector": ("CMOS",)}
     assert dict(asked.exclude) == {"task": ("Cost",)}
-    assert asked.survive == ("spin", "albedo")
-    assert asked.names == ("detector", "mask", "exclude_task", "survive")
+    assert asked.tolerate == ("spin", "albedo")
+    assert asked.names == ("detector", "mask", "exclude_task", "tolerate")
 
 
 def test_what_is_left_out_or_changed_leaves_the_rest(survey: Facts) -> None:

@@ -86,7 +86,7 @@ def ranking(methods: int = 1, units: int = 1) -> Prepared:
         for unit in range(units)
     ]
     for row in rows:
-        for name in ("rms_deg", "charged_deg"):
+        for name in ("rms_deg", "rms_all_answers_deg"):
             if isinstance(row.get(name), float):
                 row[name] *= float(np.exp(0.1 * rng.standard_normal()))
     return len(rows), lambda: board.build(rows)

@@ -78,7 +78,7 @@ def questions(seed: int) -> Iterator[str]:
         for name in ("detector", "mask", "model", "extractor", "error"):
             if rng.random() < _SHARE:
                 asked[f"exclude_{name}"] = rng.choice(values(name))
-        for name, among in (("survive", HAZARDS), ("mission", MISSIONS)):
+        for name, among in (("tolerate", HAZARDS), ("mission", MISSIONS)):
             if rng.random() < _SHARE / 3:
                 asked[name] = rng.choice(list(among))
         yield f"{PATH}?{urlencode(asked)}"

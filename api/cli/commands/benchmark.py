@@ -27,7 +27,14 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *("bound_unit_deg", "over_bound_unit", "availability", "false_sun", "latency_us", "status"),
+    *(
+        "bound_unit_deg",
+        "over_bound_unit",
+        "availability",
+        "false_detection_rate",
+        "latency_us",
+        "status",
+    ),
 )
 
 
@@ -103,7 +110,7 @@ def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form
             "rms_deg": one.rms_deg if not one.refused else None,
             "standard_error_deg": one.spread_deg if not one.refused else None,
             "dataset": nearest.dataset if nearest else None,
-            "dataset_own_deg": nearest.errors_deg.get(one.name) if nearest else None,
+            "dataset_own_error_deg": nearest.errors_deg.get(one.name) if nearest else None,
             "reason": one.refused,
         }
         for one in found.candidates

@@ -29,17 +29,24 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 app.command("findings")(findings.findings)
 
 COLUMNS = (
-    *("rank", "group", "dataset", "condition", "extractor", "model", "own_deg", "low_deg"),
-    *("high_deg", "on_bench_deg", "over_bound", "over_bound_unit", "availability", "false_sun"),
+    *("rank", "group", "dataset", "condition", "extractor", "model", "own_error_deg", "low_deg"),
+    *(
+        "high_deg",
+        "on_bench_deg",
+        "over_bound",
+        "over_bound_unit",
+        "availability",
+        "false_detection_rate",
+    ),
     *("best_of_extractor", "studies"),
 )
 FIELD_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),
-    *("own_deg", "availability", "false_sun"),
+    *("own_error_deg", "availability", "false_detection_rate"),
 )
 WIDEST_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
-    *("own_deg", "availability", "false_sun"),
+    *("own_error_deg", "availability", "false_detection_rate"),
 )
 _OF_CHECK = frozenset({"--check", "--stored", "--kernels", "--workers", "--format", "--safe"})
 DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
@@ -344,7 +351,7 @@ def _show(
     if judged == "field_rms_deg":
         chosen.sort(key=lambda row: (row[judged] is None, row[judged] or 0.0))
     elif judged == "widest_field_deg":
-        chosen.sort(key=lambda row: (-(row[judged] or 0), row["own_deg"] or 0.0))
+        chosen.sort(key=lambda row: (-(row[judged] or 0), row["own_error_deg"] or 0.0))
     title = ", ".join(datasets) if datasets else "Best of each data set"
     document = {"items": chosen, "total": len(chosen)}
     if form is Format.TABLE:

@@ -25,8 +25,8 @@ from files.atomic import replace_file
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
-    *("new", "rank", "group", "extractor", "model", "own_deg", "low_deg", "high_deg"),
-    *("on_bench_deg", "over_bound", "over_bound_unit", "availability", "false_sun"),
+    *("new", "rank", "group", "extractor", "model", "own_error_deg", "low_deg", "high_deg"),
+    *("on_bench_deg", "over_bound", "over_bound_unit", "availability", "false_detection_rate"),
 )
 #: Marks the rows of the algorithm.
 MARK = "*"

@@ -176,7 +176,7 @@ def _rungs(ladder: Mapping[str, Any] | None) -> Iterator[str]:
     yield f"Here, on {ladder['dataset']}, {ladder['condition']}:"
     for name, rung in (("its own method", ladder["own"]), ("best method", ladder["best"])):
         yield (
-            f"  {name}: {label} {digits(rung['own_deg'])} deg, {rung['extractor']} + "
+            f"  {name}: {label} {digits(rung['own_error_deg'])} deg, {rung['extractor']} + "
             f"{rung['model']}"
         )
     yield (
@@ -201,7 +201,7 @@ def _measure(pipeline: Mapping[str, Any]) -> list[str]:
 
 
 def _error(score: Mapping[str, Any]) -> str:
-    if score["own_deg"] is not None:
+    if score["own_error_deg"] is not None:
         alone = "" if score["condition"] == NOMINAL else " (unit 0 RMS)"
-        return f"{digits(score['own_deg'])} deg{alone}"
+        return f"{digits(score['own_error_deg'])} deg{alone}"
     return "not measured yet" if score["status"] is None else "without an error"

@@ -139,9 +139,9 @@ def _own(known: Knowledge, measured: Measured) -> Markup:
     """Return an own error; what is the record's, nominal and over the whole field, is marked."""
     row = known.measurements.nominal.get((measured.dataset, measured.extractor, measured.model))
     is_nominal = row is not None and measured.condition == row["condition"]
-    if row is not None and is_nominal and measured.own_deg == row["own_deg"]:
+    if row is not None and is_nominal and measured.own_error_deg == row["own_error_deg"]:
         return own_error(row)
-    return Markup("<span>{}</span>").format(degrees(measured.own_deg))
+    return Markup("<span>{}</span>").format(degrees(measured.own_error_deg))
 
 
 def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
@@ -151,7 +151,7 @@ def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
     left_out: list[str] = []
     for one in (service.architecture(found, one) for one in found.architectures):
         measured = None if one.best is None else one.best.measured
-        if measured is None or not measured.own_deg:
+        if measured is None or not measured.own_error_deg:
             continue
         value = measured.field_deg
         if not more:
@@ -169,7 +169,7 @@ def _point(one: Architecture, measured: Measured, across: float) -> Point:
         f"{one.detector} + {one.mask}",
         architecture_page(one.detector, one.mask),
         across,
-        measured.own_deg or 0.0,
+        measured.own_error_deg or 0.0,
         measured.bound_deg,
         is_built=one.built,
     )

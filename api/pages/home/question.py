@@ -50,7 +50,7 @@ _SAID = {
     "mission": "mission {}",
 }
 _LISTS = {
-    "survive": ("tolerates", "and"),
+    "tolerate": ("tolerates", "and"),
     "properties": ("extractor property", "and"),
     "exclude_needs": ("without", "or"),
 }
@@ -92,7 +92,7 @@ def form(
     values = {name: _values(known, name) for name in ATTRIBUTES}
     checks = [
         *((name, f"{NAMES[name]}, one of", values[name]) for name in ("task", "accuracy", "error")),
-        ("survive", "Must tolerate all of", [(h, f"{h}: {w}") for h, w in HAZARDS.items()]),
+        ("tolerate", "Must tolerate all of", [(h, f"{h}: {w}") for h, w in HAZARDS.items()]),
         *((name, f"{NAMES[name]}, one of", values[name]) for name in ("model", "extractor")),
         ("properties", "Extractor properties, all of", _same(known.facts.properties)),
         ("exclude_needs", "Do without", _same(NEEDS)),

@@ -19,12 +19,12 @@ class Cell:
 
     Attributes
     ----------
-    charged_deg : RMS of unit 0 over all answers; None without an error
+    rms_all_answers_deg : RMS of unit 0 over all answers; None without an error
     shade : 0 to `STEPS` - 1; None without an error
     status : of the score; None where there is none
     """
 
-    charged_deg: float | None
+    rms_all_answers_deg: float | None
     shade: int | None
     status: str | None
 
@@ -59,16 +59,16 @@ def heat_map(board: Sequence[Row], conditions: Sequence[str], ranked_by: str, mo
     chosen = [(r["extractor"], r["model"]) for r in board if r["condition"] == ranked_by][:most]
     scores = {(r["extractor"], r["model"], r["condition"]): r for r in board}
     errors = [
-        row["charged_deg"]
+        row["rms_all_answers_deg"]
         for way in chosen
         for condition in conditions
-        if (row := scores.get((*way, condition))) and row["charged_deg"]
+        if (row := scores.get((*way, condition))) and row["rms_all_answers_deg"]
     ]
     low, high = min(errors, default=1.0), max(errors, default=1.0)
     width = math.log(high / low) or 1.0
 
     def cell(row: Row | None) -> Cell:
-        error = row["charged_deg"] if row else None
+        error = row["rms_all_answers_deg"] if row else None
         if not row or not error:
             return Cell(None, None, row["status"] if row else None)
         shade = int(STEPS * math.log(error / low) / width)

@@ -13,7 +13,7 @@ from benchmark.leaderboard.findings.record import Record, geometric_mean, shared
 def benches(record: Record) -> Finding:
     """Compare the best pipeline calibrated on drawn benches with itself on true directions."""
     leading: dict[str, Cell] = {}
-    for cell in sorted(record.on_bench, key=lambda cell: (record.own_deg(cell), cell)):
+    for cell in sorted(record.on_bench, key=lambda cell: (record.own_error_deg(cell), cell)):
         leading.setdefault(cell.dataset, cell)
     pairs = [_pair(record, leading[name]) for name in sorted(leading)]
     array, single = (
@@ -59,7 +59,7 @@ def benches(record: Record) -> Finding:
 
 def _pair(record: Record, cell: Cell) -> dict[str, Any]:
     bench = record.bench_deg[cell.dataset]
-    own = record.own_deg(cell)
+    own = record.own_error_deg(cell)
     both = list(shared(record.on_bench[cell], record.errors[cell]))
     return {
         "dataset": cell.dataset,
@@ -68,7 +68,7 @@ def _pair(record: Record, cell: Cell) -> dict[str, Any]:
         "model": cell.model,
         "array": record.is_array(cell),
         "units": len(both),
-        "own_deg": own,
+        "own_error_deg": own,
         "bench_deg": bench,
         "ratio": geometric_mean([one / two for one, two in both]),
         "over_computed": math.sqrt(

@@ -61,8 +61,8 @@ def _pair(record: Record, drawn: Cell, fitted: Cell) -> dict[str, Any]:
     return {
         "dataset": drawn.dataset,
         "extractor": drawn.extractor,
-        "drawn_deg": record.own_deg(drawn),
-        "fitted_deg": record.own_deg(fitted),
+        "drawn_deg": record.own_error_deg(drawn),
+        "fitted_deg": record.own_error_deg(fitted),
         "units": len(units),
         "bench_deg": bench,
         "bench_ratio": record.ratio(drawn, fitted, (0.0, bench)),

@@ -86,7 +86,7 @@ def _steps(record: Record) -> tuple[tuple[Callable[[Use], bool], str], ...]:
 
     def honest(use: Use) -> bool:
         row = record.rows[use.cell]
-        return bool(row["charged_deg"] <= PENALTY * row["rms_deg"])
+        return bool(row["rms_all_answers_deg"] <= PENALTY * row["rms_deg"])
 
     return (
         (honest, "whose error is mostly that of false detections"),
@@ -124,10 +124,10 @@ def _pair(record: Record, cell: Cell, studies: list[str]) -> dict[str, Any]:
         "extractor": cell.extractor,
         "model": cell.model,
         "studies": studies,
-        "own_deg": record.own_deg(cell),
+        "own_error_deg": record.own_error_deg(cell),
         "best_extractor": best.extractor,
         "best_model": best.model,
-        "best_own_deg": record.own_deg(best),
+        "best_own_error_deg": record.own_error_deg(best),
         "bench_deg": bench,
         "ratio": record.ratio(cell, best),
         "bench_ratio": record.ratio(cell, best, (bench, bench)),

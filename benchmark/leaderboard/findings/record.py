@@ -57,7 +57,7 @@ class Record:
         rows = {
             cell: row
             for cell, row in nominal.items()
-            if row["charged_deg"] is not None and is_available(row)
+            if row["rms_all_answers_deg"] is not None and is_available(row)
         }
         on_bench = {cell: spread.get(_on_bench(cell)) for cell in rows}
         return cls(
@@ -76,13 +76,13 @@ class Record:
     def best(self) -> Mapping[str, Cell]:
         """The pipeline with the smallest own error, by data set."""
         found: dict[str, Cell] = {}
-        for cell in sorted(self.rows, key=lambda cell: (self.own_deg(cell), cell)):
+        for cell in sorted(self.rows, key=lambda cell: (self.own_error_deg(cell), cell)):
             found.setdefault(cell.dataset, cell)
         return found
 
-    def own_deg(self, cell: Cell) -> float:
+    def own_error_deg(self, cell: Cell) -> float:
         """Return the own error of a cell in `rows`: geometric mean over units, degrees."""
-        own = self.errors[cell].own_deg
+        own = self.errors[cell].own_error_deg
         if own is None:
             raise ValueError(f"{cell} has no error on any unit")
         return own

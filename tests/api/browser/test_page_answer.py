@@ -48,7 +48,7 @@ def test_each_architecture_says_which_evidence_meets_which_requirement(wide: Vis
         kinds = ("reported", "measured", "advised")
         assert states == [[e[kind] for kind in kinds if e[kind]] for e in one["evidence"]]
         measured, said = one["best"]["measured"], row.locator(".best").inner_text()
-        assert f"own error {degrees(measured['own_deg'])}" in said
+        assert f"own error {degrees(measured['own_error_deg'])}" in said
         assert f"Needs a calibration bench of {measured['needs_bench_deg']:g}° or better" in said
         for report in one["reports"]:
             assert (report["name"] or report["key"]) in row.locator(".reports").inner_text()

@@ -52,7 +52,7 @@ def test_a_requirement_narrows_flow_list_and_address_together(wide: Visit) -> No
 
 
 def test_a_shared_address_fills_the_form_and_asks_the_same_question(wide: Visit) -> None:
-    asked = "task=Accuracy&exclude_mask=Lens&max_error_deg=0.1&min_availability=0.97&survive=noise"
+    asked = "task=Accuracy&exclude_mask=Lens&max_error_deg=0.1&min_availability=0.97&tolerate=noise"
     page = wide.go(f"/?{asked}&detector=CMOS&detector=CCD")
     said = page.locator(".asked").inner_text()
     for part in ("task Accuracy", "mask not Lens", "0.1°", "0.97", "noise", "CCD or CMOS"):
@@ -118,7 +118,7 @@ def test_a_server_that_is_gone_is_said_and_asked_again(wide: Visit) -> None:
         "/",
         "/?max_error_deg=0.02&bench_deg=0.05",
         "/?mission=leo-cubesat&task=Power",
-        "/?detector=Event&mask=Lens&survive=spin&min_availability=0.95",
+        "/?detector=Event&mask=Lens&tolerate=spin&min_availability=0.95",
     ],
 )
 def test_nothing_overflows_a_narrow_screen(narrow: Visit, path: str) -> None:

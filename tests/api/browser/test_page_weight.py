@@ -49,7 +49,7 @@ def traffic(wide: Visit) -> Traffic:
 def test_the_first_answer_is_light_and_one_round_after_the_page(
     wide: Visit, traffic: Traffic
 ) -> None:
-    page = wide.go("/?task=Accuracy&survive=albedo")
+    page = wide.go("/?task=Accuracy&tolerate=albedo")
     page.wait_for_load_state("networkidle")
     # What is drawn first waits for the page, its styles and the one classic script: no answer of
     # the service, no module.

@@ -13,7 +13,7 @@ ASKED = {
     "exclude_mask": ["Slit"],
     "min_fov_deg": 60,
     "min_availability": 0.9,
-    "survive": ["albedo", "noise"],
+    "tolerate": ["albedo", "noise"],
     "properties": ["Robust to noise"],
     "sort": "error",
     "limit": 3,
@@ -68,8 +68,8 @@ def test_no_line_is_wider_than_80_columns(asked):
 
 
 def test_each_architecture_shows_its_evidence_in_lines_of_its_own(atlas):
-    answer = atlas.get("/v1/recommendations?task=Accuracy&survive=albedo&limit=500").json()
-    found = blocks(text("--task", "Accuracy", "--survive", "albedo", "--limit", 500))
+    answer = atlas.get("/v1/recommendations?task=Accuracy&tolerate=albedo&limit=500").json()
+    found = blocks(text("--task", "Accuracy", "--tolerate", "albedo", "--limit", 500))
     assert len(found) == answer["count"] > 5
     for lines, architecture in zip(found, answer["architectures"], strict=True):
         rank = f"{architecture['rank']}{'=' if architecture['tied'] else ''}"
@@ -111,6 +111,6 @@ def test_a_wrong_value_is_refused_in_one_line():
 
 
 def test_no_calibration_is_called_none():
-    shown = words(text("--survive", "ageing", "--include", "calibrations"))
+    shown = words(text("--tolerate", "ageing", "--include", "calibrations"))
     assert "None +" not in shown
     assert "+ None" not in shown

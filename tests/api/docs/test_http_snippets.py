@@ -32,7 +32,7 @@ def test_a_client_of_the_standard_library_prints_the_first_architecture(atlas, a
     assert first["rank"] == 1
     assert capsys.readouterr().out == (
         f"{first['detector']} {first['mask']}: {best['extractor']} + {best['model']}\n"
-        f"own error {best['own_deg']:.3g} deg\n"
+        f"own error {best['own_error_deg']:.3g} deg\n"
     )
 
 

@@ -41,8 +41,8 @@ def own_errors(measurements: Measurements) -> dict[tuple[str, str, str], float]:
     units: dict[tuple[str, str, str], list[float]] = defaultdict(list)
     for row in Store(PUBLISHED).rows(unit=None):
         first = measurements.presets[row["dataset"]].conditions[0]
-        if row["condition"] == first and row["charged_deg"]:
-            units[place(row)].append(row["charged_deg"])
+        if row["condition"] == first and row["rms_all_answers_deg"]:
+            units[place(row)].append(row["rms_all_answers_deg"])
     means = {key: math.exp(sum(map(math.log, of)) / len(of)) for key, of in units.items()}
     return {key: float(f"{mean:.5g}") for key, mean in means.items()}
 
@@ -102,8 +102,8 @@ def test_each_pair_is_in_the_state_that_sets_of_studies_and_scores_say(
             assert unknown
         if row["state"] == "unstudied":
             assert not unknown
-        if scored and row["best_own_deg"] is not None:
-            assert row["best_own_deg"] == pytest.approx(
+        if scored and row["best_own_error_deg"] is not None:
+            assert row["best_own_error_deg"] == pytest.approx(
                 min(own_errors[place(score)] for score in scored if score["availability"] >= 0.95)
             )
 

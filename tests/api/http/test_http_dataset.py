@@ -102,7 +102,7 @@ def test_realism_has_a_row_for_every_dataset_and_board_and_card_name_idealisatio
     for row in rows:
         assert bool(row["sensors"]) is (row["idealisation"] is None)
         assert boards[row["dataset"]]["idealisation"] == row["idealisation"]
-        card = datasets.get(row["dataset"]).card()["stands_for"]
+        card = datasets.get(row["dataset"]).card()["represents"]
         assert card["idealisation"] == row["idealisation"]
     (one,) = atlas.get("/v1/realism?dataset=ccd-n-slit").json()["datasets"]
     assert one["sensors"][0]["accuracy_rms_deg"] == pytest.approx(0.08 / 3)

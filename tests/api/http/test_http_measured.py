@@ -43,8 +43,16 @@ OWN = float(f"{MEAN:.5g}")  # as boards have it
 def numbers_of(rms, bound, availability):
     if rms is None:
         return {"status": "failed", **dict.fromkeys(METRICS), "reason": "fit: too few samples"}
-    metrics = dict.fromkeys(METRICS, 0.25) | {"false_sun": None, "availability": availability}
-    metrics |= {"rms_deg": rms, "charged_deg": rms, "bound_deg": bound, "over_bound": rms / bound}
+    metrics = dict.fromkeys(METRICS, 0.25) | {
+        "false_detection_rate": None,
+        "availability": availability,
+    }
+    metrics |= {
+        "rms_deg": rms,
+        "rms_all_answers_deg": rms,
+        "bound_deg": bound,
+        "over_bound": rms / bound,
+    }
     metrics |= {"rms_0_10_deg": 2.0 * rms, "rms_10_20_deg": None}
     return {"status": "ok", **metrics, "reason": ""}
 
@@ -196,7 +204,7 @@ def test_recommendations_carry_what_is_measured(measured):
         "model": "spm",
         "condition": "nominal",
         "field_deg": 120.0,
-        "own_deg": pytest.approx(OWN, rel=1e-4),
+        "own_error_deg": pytest.approx(OWN, rel=1e-4),
         "own_low_deg": pytest.approx(OWN / spread, rel=1e-3),
         "own_high_deg": pytest.approx(OWN * spread, rel=1e-3),
         "on_bench_deg": None,

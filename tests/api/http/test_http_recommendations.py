@@ -55,7 +55,10 @@ def test_the_usual_answer_is_short_and_the_rest_is_included_on_request(atlas):
     for architecture in more["architectures"]:
         listed = architecture["calibrations"]
         assert len(listed) == min(2, architecture["count"])
-        assert listed[0]["measured"]["own_deg"] == architecture["best"]["measured"]["own_deg"]
+        assert (
+            listed[0]["measured"]["own_error_deg"]
+            == architecture["best"]["measured"]["own_error_deg"]
+        )
     assert len(more["rows"]["items"]) == 200 < more["rows"]["total"]
     following = atlas.get(more["rows"]["next"]).json()
     assert following["items"][0] not in more["rows"]["items"]
@@ -102,7 +105,7 @@ def test_a_body_takes_one_value_for_a_list_of_it(atlas):
     for name, value in [
         ("detector", "CMOS"),
         ("exclude_task", "Cost"),
-        ("survive", "albedo"),
+        ("tolerate", "albedo"),
         ("include", "paths"),
     ]:
         single = atlas.post(PATH, json={name: value})

@@ -42,7 +42,7 @@ MODELS = {
     "/v1/figures/publications?detector=OI": PublicationRow,
     "/v1/figures/coordinates?detector=OI": SensorRow,
     "/v1/recommendations?task=Accuracy": RecommendationRow,
-    "/v1/recommendations?survive=albedo&max_error_deg=1": RecommendationRow,
+    "/v1/recommendations?tolerate=albedo&max_error_deg=1": RecommendationRow,
     "/v1/recommendations?max_error_deg=0.000001": RecommendationRow,
     "/v1/recommendations/flow?task=Accuracy": Path,
     "/v1/recommendations/designs?task=Accuracy": RecommendationRow,
@@ -75,7 +75,7 @@ TABLES = {url: tuple(columns_of(model)) for url, model in MODELS.items()}
 LISTS = {
     # nested, and so columns of their own or left to JSON
     "/v1/studies": {"values", "runs", "headline", "sentence"},
-    "/v1/datasets": {"splits", "stands_for", "setups"},
+    "/v1/datasets": {"splits", "represents", "setups"},
     "/v1/curves": None,  # points and draws are JSON's
     "/v1/claims": None,  # rules too
     "/v1/algorithms": set(),

@@ -6,7 +6,7 @@ from api.figures.catalogue import MATRIX, TITLES
 
 KINDS = {
     "answer": "/",
-    "answer, asked": "/?task=Accuracy&max_error_deg=0.1&survive=albedo",
+    "answer, asked": "/?task=Accuracy&max_error_deg=0.1&tolerate=albedo",
     "answer, on a bench": "/?max_error_deg=0.02&bench_deg=0.05&detector=CMOS&detector=CCD",
     "answer, over poses": "/?mission=leo-cubesat&across=poses",
     "answer, nothing left": "/?detector=Event&mask=Lens",

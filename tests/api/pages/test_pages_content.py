@@ -23,7 +23,7 @@ def test_a_study_shows_every_value_with_its_basis_and_every_score(atlas: Client)
     for cell in document["attributes"]:
         assert cell["value"] in page
         assert cell["note"] in page
-    errors = [s["own_deg"] for p in document["pipelines"] for s in p["scores"]]
+    errors = [s["own_error_deg"] for p in document["pipelines"] for s in p["scores"]]
     assert len(errors) > 4
     assert all(degrees(error) in page for error in errors if error is not None)
 
@@ -40,8 +40,8 @@ def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Cl
     rows = atlas.walk("/v1/leaderboard/architectures?limit=500")
     by_name = [f"{row['detector']} + {row['mask']}" for row in rows]
     orders = {
-        "": sorted(rows, key=lambda row: row["own_deg"]),
-        "?order=error": sorted(rows, key=lambda row: row["own_deg"]),
+        "": sorted(rows, key=lambda row: row["own_error_deg"]),
+        "?order=error": sorted(rows, key=lambda row: row["own_error_deg"]),
         "?order=bound": sorted(rows, key=lambda row: row["over_bound"]),
         "?order=name": rows,
     }
@@ -54,13 +54,13 @@ def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Cl
     page = text_of(html)
     for row in rows:
         assert row["dataset"] in page
-        assert f"{degrees(row['own_deg'])}{' =' if row['tie'] else ''}" in page
+        assert f"{degrees(row['own_error_deg'])}{' =' if row['tie'] else ''}" in page
     table = atlas.table("/leaderboard.csv?order=name")
     assert table == atlas.table("/v1/leaderboard/architectures?limit=500")
 
 
 def test_the_answer_reads_without_a_script(atlas: Client) -> None:
-    asked = "task=Accuracy&survive=albedo"
+    asked = "task=Accuracy&tolerate=albedo"
     document = atlas.get(f"/v1/recommendations?{asked}&include=calibrations").json()
     html = atlas.get(f"/?{asked}").text
     page = text_of(html)
@@ -71,10 +71,10 @@ def test_the_answer_reads_without_a_script(atlas: Client) -> None:
         assert f"{architecture['detector']} + {architecture['mask']}" in page
         assert str(explain_terms(architecture["reason"])) in html
         for calibration in architecture["calibrations"]:
-            if calibration["measured"] and calibration["measured"]["own_deg"] is not None:
-                assert degrees(calibration["measured"]["own_deg"]) in page
+            if calibration["measured"] and calibration["measured"]["own_error_deg"] is not None:
+                assert degrees(calibration["measured"]["own_error_deg"]) in page
     assert "Asked: task Accuracy, tolerates albedo." in page
-    assert "sunatlas recommend --task Accuracy --survive albedo" in page
+    assert "sunatlas recommend --task Accuracy --tolerate albedo" in page
 
 
 def test_the_answers_twins_are_the_documents_of_the_service(atlas: Client) -> None:
@@ -92,8 +92,8 @@ def test_the_scatter_has_a_point_for_every_own_error_and_no_other(atlas: Client)
         page = atlas.get(f"/?{asked}").text
         drawn = re.findall(r'<circle class="dot (\w+)', page)
         every = [a["best"]["measured"] for a in document if a["best"] and a["best"]["measured"]]
-        places = {(m["field_deg"], m["own_deg"]) for m in every if m["own_deg"]}
-        assert len(drawn) == sum(bool(m["own_deg"]) for m in every) > 5
+        places = {(m["field_deg"], m["own_error_deg"]) for m in every if m["own_error_deg"]}
+        assert len(drawn) == sum(bool(m["own_error_deg"]) for m in every) > 5
         # The front: none errs less over a field as wide.
         front = [
             (field, error)
@@ -102,7 +102,9 @@ def test_the_scatter_has_a_point_for_every_own_error_and_no_other(atlas: Client)
         ]
         assert drawn.count("pareto") == len(front)
         titles = re.findall(r"own error (\S+°)", "".join(re.findall("<title>(.*?)</title>", page)))
-        assert sorted(titles) == sorted(degrees(m["own_deg"]) for m in every if m["own_deg"])
+        assert sorted(titles) == sorted(
+            degrees(m["own_error_deg"]) for m in every if m["own_error_deg"]
+        )
 
 
 def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:

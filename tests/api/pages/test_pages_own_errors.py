@@ -56,7 +56,7 @@ def require_the_record(known: Knowledge, client: Client, pages: Iterable[str]) -
     """Require that every own error of some pages is the record's; return of how many pipelines."""
     record: Mapping[Any, Mapping[str, Any]] = known.measurements.nominal
     board = {
-        (row["dataset"], row["extractor"], row["model"]): row["own_deg"]
+        (row["dataset"], row["extractor"], row["model"]): row["own_error_deg"]
         for row in known.measurements.board_rows()
         if row["condition"] == "nominal"
     }
@@ -64,7 +64,7 @@ def require_the_record(known: Knowledge, client: Client, pages: Iterable[str]) -
     for address in pages:
         html = client.get(address, accept="text/html").text
         for place, value, text in shown(html):
-            assert value == record[place]["own_deg"] == board[place], (address, place)
+            assert value == record[place]["own_error_deg"] == board[place], (address, place)
             met.setdefault(place, set()).add(text)
         for cell in CELL.findall(html):
             bare = BELOW.sub("", HOOK.sub("", cell))
@@ -82,7 +82,7 @@ def test_own_errors_of_one_page_of_each_kind_are_the_records(
 
 @pytest.mark.slow
 def test_own_errors_of_all_pages_are_the_records(knowledge: Knowledge, atlas: Client) -> None:
-    known = sum(row["own_deg"] is not None for row in knowledge.measurements.nominal.values())
+    known = sum(row["own_error_deg"] is not None for row in knowledge.measurements.nominal.values())
     assert known > 3000
     assert require_the_record(knowledge, atlas, addresses(knowledge)) == known
 
@@ -100,10 +100,10 @@ def test_a_study_is_a_ladder_on_one_data_set_and_condition(
     own = next(
         row for row in rows if all(row[n] == ladder["own"][n] for n in ("extractor", "model"))
     )
-    assert ladder["own"]["own_deg"] == own["own_deg"]
-    assert ladder["best"]["own_deg"] == rows[0]["own_deg"]
-    assert ladder["own"]["own_deg"] == min(
-        score["own_deg"]
+    assert ladder["own"]["own_error_deg"] == own["own_error_deg"]
+    assert ladder["best"]["own_error_deg"] == rows[0]["own_error_deg"]
+    assert ladder["own"]["own_error_deg"] == min(
+        score["own_error_deg"]
         for pipeline in document["pipelines"]
         for score in pipeline["scores"]
         if (score["dataset"], score["condition"]) == (ladder["dataset"], ladder["condition"])
@@ -118,13 +118,13 @@ def test_a_study_is_a_ladder_on_one_data_set_and_condition(
     assert f"/calibrate?model={ladder['own']['model']}" in rungs
     lines = " ".join(_rungs(ladder))
     for rung in (ladder["own"], ladder["best"]):
-        assert degrees(rung["own_deg"]) in read
-        assert f"own error {digits(rung['own_deg'])} deg" in lines
+        assert degrees(rung["own_error_deg"]) in read
+        assert f"own error {digits(rung['own_error_deg'])} deg" in lines
 
 
 def test_documents_have_the_records_own_errors(knowledge: Knowledge) -> None:
     own = {
-        (row["dataset"], f"{row['extractor']} + {row['model']}"): row["own_deg"]
+        (row["dataset"], f"{row['extractor']} + {row['model']}"): row["own_error_deg"]
         for row in knowledge.measurements.nominal.values()
     }
     text = (DOCS / "leaderboard.md").read_text("utf-8")

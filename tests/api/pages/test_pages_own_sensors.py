@@ -33,7 +33,7 @@ def test_a_page_shows_the_sensor_with_scores_of_its_own_record(atlas: Client, ke
     by = {(row["condition"], row["extractor"], row["model"]): row["rms_deg"] for row in scored}
     ladder = document["ladder"]
     assert ladder["dataset"] == KEYS[key]
-    assert degrees(ladder["own"]["own_deg"]) in page
+    assert degrees(ladder["own"]["own_error_deg"]) in page
     for pipeline in document["pipelines"]:
         for score in pipeline["scores"]:
             place = score["condition"], pipeline["extractor"], pipeline["model"]

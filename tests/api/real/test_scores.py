@@ -38,6 +38,6 @@ def test_the_command_shows_them_beside_a_standard_data_set(capsys):
     rows = json.loads(told.out)
     rows = rows if isinstance(rows, list) else next(v for v in rows.values() if isinstance(v, list))
     assert [row["model"] for row in rows] == [row["model"] for row in kept("cubesatbox")]
-    assert all(row["dataset"] and row["dataset_own_deg"] > 0 for row in rows)
+    assert all(row["dataset"] and row["dataset_own_error_deg"] > 0 for row in rows)
     assert "licence: MIT" in told.err
     assert "Benjamin Jensen" in told.err

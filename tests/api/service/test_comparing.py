@@ -28,16 +28,18 @@ def test_pipelines_have_the_numbers_of_their_scores_and_curves(atlas, known):
         by = {score["condition"]: score for score in scores}
         for name in ("bound_deg", "availability", "over_bound"):
             assert item[name] == by["hot"][name]
-        assert item["own_deg"] == by["hot"]["charged_deg"]  # of unit 0, which alone is measured
-        assert {c: v["charged_deg"] for c, v in item["conditions"].items()} == {
-            c: score["charged_deg"] for c, score in by.items() if c != "on-bench"
+        assert (
+            item["own_error_deg"] == by["hot"]["rms_all_answers_deg"]
+        )  # of unit 0, which alone is measured
+        assert {c: v["rms_all_answers_deg"] for c, v in item["conditions"].items()} == {
+            c: score["rms_all_answers_deg"] for c, score in by.items() if c != "on-bench"
         }
         assert item["needed_poses"] == curve["needed_poses"]
         for ring in item["rings"]:
             name = f"rms_{ring['inner_deg']:g}_{ring['outer_deg']:g}_deg"
             assert ring["rms_deg"] == by["hot"][name]
-    errors = [item["own_deg"] for item in found["items"]]
-    assert [i["over_least"] for i in found["items"]] == [e / min(errors) for e in errors]
+    errors = [item["own_error_deg"] for item in found["items"]]
+    assert [i["ratio_to_smallest"] for i in found["items"]] == [e / min(errors) for e in errors]
 
 
 def test_architectures_have_their_best_pipeline_and_their_studies(atlas, known):
@@ -49,7 +51,14 @@ def test_architectures_have_their_best_pipeline_and_their_studies(atlas, known):
     found = compare_architectures(known, names)["items"]
     for item, name in zip(found, names, strict=True):
         assert f"{item['detector']}:{item['mask']}" == name
-        for member in ("dataset", "extractor", "model", "own_deg", "over_bound", "half_fov_deg"):
+        for member in (
+            "dataset",
+            "extractor",
+            "model",
+            "own_error_deg",
+            "over_bound",
+            "half_fov_deg",
+        ):
             assert item[member] == best[name][member]
     listed = atlas.get("/v1/studies?detector=CMOS&mask=Multi-Ap.").json()["items"]
     assert set(found[2]["proposed"]) <= {study["key"] for study in listed}
@@ -66,27 +75,27 @@ def test_what_errs_far_less_under_a_condition_is_named_with_its_share(atlas, kno
             rows = [
                 row
                 for row in atlas.walk(asked)
-                if row["charged_deg"] is not None and row["availability"] >= 0.5
+                if row["rms_all_answers_deg"] is not None and row["availability"] >= 0.5
             ]
-            least = min(rows, key=lambda row: row["charged_deg"])
-            error = scored["charged_deg"]
-            if error is None or error <= 3 * least["charged_deg"]:
-                assert scored["finer"] is None
+            least = min(rows, key=lambda row: row["rms_all_answers_deg"])
+            error = scored["rms_all_answers_deg"]
+            if error is None or error <= 3 * least["rms_all_answers_deg"]:
+                assert scored["partial_answer"] is None
                 continue
             named += 1
-            assert scored["finer"]["charged_deg"] == least["charged_deg"]
-            for member, value in scored["finer"].items():
+            assert scored["partial_answer"]["rms_all_answers_deg"] == least["rms_all_answers_deg"]
+            for member, value in scored["partial_answer"].items():
                 assert value == least[member]
     assert named >= 0
     found = compare_pipelines(known, DATASET, ["bctm:spm", "mirror:homography"])
-    assert {i["finer"] for i in found["items"]} == {None}
+    assert {i["partial_answer"] for i in found["items"]} == {None}
 
 
 def test_architectures_that_only_studies_have_are_shown_without_numbers(tmp_path):
     unmeasured = Knowledge(Measurements(tmp_path))
     for item in compare_architectures(unmeasured, ["CMOS:Multi-Ap.", "QPD:Single-Ap."])["items"]:
-        assert item["own_deg"] is None
-        assert item["over_least"] is None
+        assert item["own_error_deg"] is None
+        assert item["ratio_to_smallest"] is None
         assert item["reason"] == "no data set"
         assert len(item["proposed"]) > 3
 

@@ -87,7 +87,7 @@ def test_an_outcome_is_read_as_it_was_written(tmp_path):
     keep(tmp_path, trials())
     again = read_outcomes(tmp_path)["C04"]
     assert again.values == {"little": (1.0,) * 6, "before": (2.0,) * 6}
-    assert again.lines["line"].across == (1.0, 2.0)
+    assert again.lines["line"].x == (1.0, 2.0)
     assert again.lines["line"].median[0] == 0.5
     assert math.isnan(again.lines["line"].median[1])
     before = RECORD.read(tmp_path)["C04"]

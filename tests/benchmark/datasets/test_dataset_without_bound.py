@@ -73,7 +73,7 @@ def test_where_nothing_is_observable_there_is_no_error_and_no_rank(tmp_path: Pat
     """Every answer is a false Sun, and the row says no more."""
     store = measured(tmp_path, Unbounded(seen=False))
     for row in store.rows():
-        assert (row["n_observable"], row["false_sun"]) == (0, 1)
+        assert (row["n_observable"], row["false_detection_rate"]) == (0, 1)
         assert [row[f] for f in ("availability", "rms_deg", "repeatability_deg")] == [None] * 3
     board = board_of(store)
     assert [row["rank"] for row in board["datasets"][0]["rows"]] == [None, None]

@@ -115,7 +115,7 @@ def test_the_leader_is_chosen_over_its_units():
 
     def scored(model, *errors):
         return [
-            {**plain, "model": model, "unit": unit, "rms_deg": error, "charged_deg": error}
+            {**plain, "model": model, "unit": unit, "rms_deg": error, "rms_all_answers_deg": error}
             for unit, error in enumerate(errors)
         ]
 

@@ -18,10 +18,10 @@ published, resolution = Path(sys.argv[1]), pd.read_csv(sys.argv[2])
 scores = pd.concat(
     pd.read_csv(file).assign(dataset=file.stem) for file in (published / "scores").glob("*.csv")
 )
-scores = scores[(scores.condition == "nominal") & scores.charged_deg.notna()]
+scores = scores[(scores.condition == "nominal") & scores.rms_all_answers_deg.notna()]
 standard = scores[scores.unit == 0].set_index(CELL)
 standard = standard[standard.availability >= 0.95].sort_index()
-by_unit = scores.pivot_table(index=CELL, columns="unit", values="charged_deg")
+by_unit = scores.pivot_table(index=CELL, columns="unit", values="rms_all_answers_deg")
 by_unit = by_unit.loc[by_unit.index.isin(standard.index)]
 own = np.exp(np.log(by_unit).mean(axis=1))
 pins = pd.read_csv(published / "pins.csv").query("condition == 'nominal' and split == 'test'")
@@ -45,11 +45,11 @@ def summary(values):
 
 
 mapped = resolution[resolution.edition == "survey"]
-uses = mapped.merge(standard[["charged_deg", "rms_deg"]].reset_index(), on=CELL)
+uses = mapped.merge(standard[["rms_all_answers_deg", "rms_deg"]].reset_index(), on=CELL)
 base = uses.model.str.split(" + ", regex=False).str[-1]
 stated = ~uses[["extractor_basis", "model_basis"]].isin(["recalled", "defaulted"]).any(axis=1)
 lost = [mapped.study.nunique() - uses.study.nunique()]
-for keep in (uses.charged_deg <= 2 * uses.rms_deg, stated, ~base.isin(NOTHING_FITTED)):
+for keep in (uses.rms_all_answers_deg <= 2 * uses.rms_deg, stated, ~base.isin(NOTHING_FITTED)):
     kept = uses[keep.loc[uses.index]]
     lost.append(uses.study.nunique() - kept.study.nunique())
     uses = kept

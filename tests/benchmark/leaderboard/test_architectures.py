@@ -16,7 +16,7 @@ def row(model, rms, *, unit=0, dataset="d", bound=1.0, se=0.01, **more):
     return {
         "dataset": dataset, "condition": "nominal", "extractor": "e", "model": model, "unit": unit,
         "dataset_version": 1, "detector": "PD", "mask": "M", "half_fov_deg": None,
-        **dict.fromkeys(METRICS), "rms_deg": rms, "charged_deg": rms, "bound_deg": bound,
+        **dict.fromkeys(METRICS), "rms_deg": rms, "rms_all_answers_deg": rms, "bound_deg": bound,
         "over_bound": ratio, "over_bound_se": se, "availability": 1.0, **more,
     }  # fmt: skip
 
@@ -82,8 +82,8 @@ def test_what_errs_far_less_but_answers_too_seldom_is_named_beside_the_best():
     """A grid that is read surely on part of its field: neither hidden, nor first."""
     seldom = row("b", 0.1, dataset="e", availability=0.7)
     found = one(row("a", 2.0), seldom, row("c", 0.05, availability=0.4))
-    assert (found["model"], found["finer_model"], found["finer_dataset"]) == ("a", "b", "e")
-    assert (found["finer_own_deg"], found["finer_availability"]) == (0.1, 0.7)
+    assert (found["model"], found["partial_model"], found["partial_dataset"]) == ("a", "b", "e")
+    assert (found["partial_own_error_deg"], found["partial_availability"]) == (0.1, 0.7)
     assert "b: 0.100 deg at 70 %" in best_per_architecture_table([found])
-    assert one(row("a", 0.25), seldom)["finer_model"] is None, "not three times as fine"
-    assert one(seldom)["finer_model"] is None, "it is what stands there"
+    assert one(row("a", 0.25), seldom)["partial_model"] is None, "not three times as fine"
+    assert one(seldom)["partial_model"] is None, "it is what stands there"

@@ -113,7 +113,7 @@ def record_of(
 
     rows = {
         Cell(d, "nominal", e, m): {
-            "charged_deg": values[0],
+            "rms_all_answers_deg": values[0],
             "rms_deg": (answered_deg or {}).get((d, e, m), values[0]),
             "detector": (detectors or {}).get(d, "CMOS"),
             "mask": "Slit",

@@ -31,7 +31,7 @@ def test_a_first_group_has_the_least_geometric_mean_over_the_units_of_the_board(
 
     def mean(cell: Cell) -> float:
         units = [scores.get(replace(cell, unit=unit)) for unit in range(UNITS)]
-        return geometric_mean([row["charged_deg"] for row in units if row is not None])
+        return geometric_mean([row["rms_all_answers_deg"] for row in units if row is not None])
 
     assert mean(leader) <= min(map(mean, [*others, *behind]))
     assert 0 < len(behind) <= fresh_units.BEHIND

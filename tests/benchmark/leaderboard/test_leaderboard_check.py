@@ -78,7 +78,7 @@ def test_a_number_changed_by_hand_is_named_by_its_file(made, tmp_path):
     [
         ("p997_deg", 0.123),
         ("availability", 0.5),
-        ("false_sun", 0.5),
+        ("false_detection_rate", 0.5),
         ("repeatability_deg", 0.123),
         ("over_bound_se", None),
         ("rms_10_20_deg", 0.123),
@@ -113,7 +113,7 @@ def test_an_altered_number_of_the_page_is_found_without_measuring(published):
     scores = store.scores()
     scores[CELL] = {
         **scores[CELL],
-        "charged_deg": 0.123,
+        "rms_all_answers_deg": 0.123,
         "over_bound": None,
         "over_bound_unit": None,
     }

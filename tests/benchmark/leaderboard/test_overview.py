@@ -17,7 +17,7 @@ def row(dataset, extractor, model, ratio, **more):
         "dataset": dataset, "condition": "nominal", "extractor": extractor, "model": model,
         "extractor_taxonomy": "E", "model_taxonomy": "M", "unit": 0, "dataset_version": 1,
         "detector": "PD", "mask": "M", "half_fov_deg": None, **dict.fromkeys(METRICS),
-        "rms_deg": ratio, "charged_deg": more.get("rms_deg", ratio), "over_bound": ratio,
+        "rms_deg": ratio, "rms_all_answers_deg": more.get("rms_deg", ratio), "over_bound": ratio,
         "availability": 1.0, **more,
     }  # fmt: skip
 

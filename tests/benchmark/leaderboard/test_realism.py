@@ -30,7 +30,7 @@ def row(**more: Any) -> dict[str, Any]:
         "rms_deg": 0.1, "bound_deg": 0.01, "repeatability_deg": 0.02, "half_fov_deg": 60.0,
         "availability": 1.0,
     }  # fmt: skip
-    given |= {"charged_deg": more.get("rms_deg", 0.1)}
+    given |= {"rms_all_answers_deg": more.get("rms_deg", 0.1)}
     return {**given, **{ring.column: 0.05 for ring in RINGS}, **more}
 
 

@@ -59,7 +59,7 @@ def test_scores_that_one_of_two_records_has_otherwise_are_named(tmp_path: Path) 
     )
     found = compare(one, other)
     assert [(d.file, d.cell) for d in found] == [
-        ("scores/d.csv", f"{cell('a')}/{column}") for column in ("rms_deg", "charged_deg")
+        ("scores/d.csv", f"{cell('a')}/{column}") for column in ("rms_deg", "rms_all_answers_deg")
     ] + [("scores/d.csv", f"{cell(name)}/row") for name in ("b", "m")]
     assert [(d.committed, d.measured) for d in found] == [
         ("0.5", "0.6"),

@@ -37,7 +37,7 @@ NUMBERS = st.one_of(
 
 def numbers(given):
     error, availability = given or (None, None)
-    return {"charged_deg": error, "availability": availability}
+    return {"rms_all_answers_deg": error, "availability": availability}
 
 
 @settings(deadline=None, derandomize=True)

@@ -26,7 +26,7 @@ def test_accuracy_is_compared_within_a_ten_thousandth_and_shares_within_a_sample
     assert differences("median_deg", 0.5, 0.5 * (1 + 2e-4)) == [f"{CELL}/median_deg"]
     assert differences("availability", 1.0, 1 - 1 / 400) == []
     assert differences("availability", 1.0, 1 - 2 / 400) == [f"{CELL}/availability"]
-    assert differences("false_sun", None, 0.0) == [f"{CELL}/false_sun"]
+    assert differences("false_detection_rate", None, 0.0) == [f"{CELL}/false_detection_rate"]
     assert differences("rms_deg", None, 0.5) == [f"{CELL}/rms_deg"]
     assert differences("status", "ok", "failed") == [f"{CELL}/status"]
     # a mean near zero is as uncertain as the spread it averages
@@ -34,7 +34,7 @@ def test_accuracy_is_compared_within_a_ten_thousandth_and_shares_within_a_sample
     assert differences("bias_alpha_deg", 1e-9, -6e-5) == [f"{CELL}/bias_alpha_deg"]
 
 
-COLUMNS = [name for name in METRICS if name not in ("availability", "false_sun")]
+COLUMNS = [name for name in METRICS if name not in ("availability", "false_detection_rate")]
 
 
 @settings(deadline=None, derandomize=True)

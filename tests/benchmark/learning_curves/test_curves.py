@@ -125,19 +125,23 @@ def scored(**errors):
     """Rows of a board by model; what answers too rarely or is of another condition is none."""
     plain = {"dataset": "d", "condition": "c", "unit": 0, "extractor": "e", "availability": 1.0}
     return [
-        {**plain, "model": model, **dict.fromkeys(("charged_deg", "median_deg", "max_deg"), error)}
+        {
+            **plain,
+            "model": model,
+            **dict.fromkeys(("rms_all_answers_deg", "median_deg", "max_deg"), error),
+        }
         for model, error in errors.items()
     ]
 
 
 def test_leaders_are_the_best_pipelines_of_three_models():
     rows = scored(a=3.0, b=1.0, c=2.0, f=4.0, twin_of_c=2.0)
-    rows += [{**row, "extractor": "other", "charged_deg": 0.9} for row in scored(b=0.0)]
+    rows += [{**row, "extractor": "other", "rms_all_answers_deg": 0.9} for row in scored(b=0.0)]
     rows += [
         {**scored(x=0.1)[0], "availability": 0.94},
         {**scored(y=0.1)[0], "unit": 1},
         {**scored(z=0.1)[0], "condition": "else"},
-        {**scored(n=0.1)[0], "charged_deg": None},
+        {**scored(n=0.1)[0], "rms_all_answers_deg": None},
     ]
     found = leaders(rows, {"d": "c"})
     assert [(one.place, one.extractor, one.model) for one in found] == [
@@ -161,7 +165,7 @@ def store(tmp_path):
     """A record with a score for every pipeline."""
     scores = {
         Cell(name, "nominal", "fake-readings", model): numbers(
-            BOUND, charged_deg=float(place), bound_deg=BOUND
+            BOUND, rms_all_answers_deg=float(place), bound_deg=BOUND
         )
         for name in PARTS.presets
         for place, model in enumerate(PARTS.models, start=1)

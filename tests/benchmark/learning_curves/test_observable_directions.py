@@ -18,7 +18,7 @@ def test_all_samples_count_only_where_all_are_pinned_as_observable(tmp_path, obs
     parts = Parts({"fake-plane": Plane()}, {"fake-readings": Readings}, {"fake-lines": Lines})
     cell = Cell("fake-plane", "nominal", "fake-readings", "fake-lines")
     pin = Pin("fake-plane", "nominal", "test", 1, 2000, "h", "hh", observable, 0.1, 0.1)
-    scores = {cell: numbers(0.1, charged_deg=0.1, bound_deg=0.1)}
+    scores = {cell: numbers(0.1, rms_all_answers_deg=0.1, bound_deg=0.1)}
     Store(tmp_path).write(scores, [pin], current(parts))
     curves = LearningCurves(tmp_path, parts)
     (task,) = curves.tasks(curves.cells())

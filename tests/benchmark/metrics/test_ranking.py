@@ -14,8 +14,8 @@ from benchmark.metrics.score import METRICS
 def row(model, charged, *, unit=0, condition="nominal", **more):
     return {
         "dataset": "d", "condition": condition, "extractor": "e", "model": model, "unit": unit,
-        **dict.fromkeys(METRICS), "rms_deg": charged, "charged_deg": charged, "availability": 1.0,
-        **more,
+        **dict.fromkeys(METRICS), "rms_deg": charged, "rms_all_answers_deg": charged,
+        "availability": 1.0, **more,
     }  # fmt: skip
 
 
@@ -32,7 +32,7 @@ def units(middle, spread, seed, count=10):
 
 def test_own_error_is_the_geometric_mean_over_units_with_its_standard_error():
     spread = UnitErrors((1.0, 2.0, 4.0))
-    assert spread.own_deg == 2.0
+    assert spread.own_error_deg == 2.0
     assert spread.own_se == pytest.approx(math.log(2.0) / math.sqrt(3), rel=1e-4)
     assert (spread.low_deg, spread.high_deg) == (1.0, 4.0)
     assert UnitErrors((1.0, None)).low_deg is None
@@ -53,7 +53,7 @@ def test_units_are_paired_so_that_what_is_hard_for_all_separates_nothing_less():
 def test_what_is_not_distinguished_is_listed_by_own_error():
     hard = units(1.0, 0.5, 1)
     _, found = board(a=1.001 * hard * units(1.0, 0.02, 2), b=0.999 * hard * units(1.0, 0.02, 3))
-    own = [UnitErrors(tuple(hard * more)).own_deg for more in (
+    own = [UnitErrors(tuple(hard * more)).own_error_deg for more in (
         1.001 * units(1.0, 0.02, 2), 0.999 * units(1.0, 0.02, 3)
     )]  # fmt: skip
     assert {place.group for place in found.places} == {1}

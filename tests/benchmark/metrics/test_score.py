@@ -79,7 +79,7 @@ def test_errors_are_of_answers_to_observable_samples_and_shares_count_the_rest(s
         return pytest.approx(np.mean(of) if of.size else NAN, nan_ok=True)
 
     assert result.availability == share(answered[seen])
-    assert result.false_sun == share(answered[~seen])
+    assert result.false_detection_rate == share(answered[~seen])
     judged = angles[seen & answered]
     expected = {
         "rms_deg": np.sqrt(np.mean(judged**2)),
@@ -101,13 +101,13 @@ def test_an_answer_to_an_unobservable_sample_is_charged_and_moves_no_other_error
     plain = score(predicted, sun, observable=seen, **bounds)
     predicted[~seen] = -sun[~seen]
     wrong = score(predicted, sun, observable=seen, **bounds)
-    assert wrong == replace(plain, charged_deg=wrong.charged_deg)
+    assert wrong == replace(plain, rms_all_answers_deg=wrong.rms_all_answers_deg)
     everything = np.concatenate([separation_deg(predicted, sun)[seen], np.full(50, 180.0)])
-    assert wrong.charged_deg == pytest.approx(np.sqrt(np.mean(everything**2)))
+    assert wrong.rms_all_answers_deg == pytest.approx(np.sqrt(np.mean(everything**2)))
     predicted[~seen] = np.nan
     silent = score(predicted, sun, observable=seen, **bounds)
-    assert (plain.false_sun, silent.false_sun) == (1.0, 0.0)
-    assert silent == replace(plain, false_sun=0.0, charged_deg=plain.rms_deg)
+    assert (plain.false_detection_rate, silent.false_detection_rate) == (1.0, 0.0)
+    assert silent == replace(plain, false_detection_rate=0.0, rms_all_answers_deg=plain.rms_deg)
 
 
 def test_axis_errors_leave_out_directions_behind_the_detector():
@@ -127,7 +127,7 @@ def test_the_bound_is_taken_over_samples_both_found_and_observable():
     result = score(predicted, sun, bound, np.array([True, True, True, False]))
     assert result.bound_deg == pytest.approx(np.sqrt((1 + 4) / 2))
     assert result.over_bound == pytest.approx(3 / np.sqrt(2.5))
-    assert (result.availability, result.false_sun) == (pytest.approx(2 / 3), 1.0)
+    assert (result.availability, result.false_detection_rate) == (pytest.approx(2 / 3), 1.0)
 
 
 def test_a_misalignment_is_all_that_alignment_takes_away():
@@ -179,7 +179,7 @@ def test_nothing_answered_is_undefined_and_never_a_number():
     assert tuple(row) == METRICS
     assert {name: value for name, value in row.items() if value is not None} == {
         "availability": 0.0,
-        "false_sun": 0.0,
+        "false_detection_rate": 0.0,
     }
 
 
@@ -189,8 +189,8 @@ def test_nothing_observable_leaves_only_false_suns():
     predicted[0] = np.nan
     row = score(predicted, sun, np.full(4, np.inf), np.zeros(4, bool)).row()
     assert {name: value for name, value in row.items() if value is not None} == {
-        "false_sun": 0.75,
-        "charged_deg": 0.0,
+        "false_detection_rate": 0.75,
+        "rms_all_answers_deg": 0.0,
     }
     assert not is_available(row)
 

@@ -19,7 +19,7 @@ CMOS = "cmos-single-aperture"
 
 def row(condition="nominal", unit=0, **changed):
     numbers = dict.fromkeys(METRICS, 0.25) | {"rms_deg": 0.5, "availability": 1.0}
-    numbers["charged_deg"] = changed.get("rms_deg", 0.5)
+    numbers["rms_all_answers_deg"] = changed.get("rms_deg", 0.5)
     return {
         "dataset": CMOS,
         "detector": "CMOS",
@@ -41,7 +41,7 @@ def test_rows_of_a_pipeline_become_one():
     rows += [row(name, rms_deg=2.0) for name in names[1:]]
     (found,) = pipelines(rows, {(CMOS, "bctm", "spm"): 7.0})
     assert found.nominal.condition == names[0]
-    assert found.unit_own_deg == (0.5, 0.4, 0.3)
+    assert found.unit_own_error_deg == (0.5, 0.4, 0.3)
     middle = (0.5 * 0.4 * 0.3) ** (1 / 3)
     assert found.nominal.rms_deg == float(f"{middle:.5g}")  # as boards have it
     assert found.latency_us == 7.0
@@ -129,7 +129,7 @@ def test_albedo_changes_the_order_of_errors_of_coarse_sensors(published):
         return sorted(errors, key=errors.get), errors
 
     clear, without = order()
-    lit, under = order(survive=["albedo"])
+    lit, under = order(tolerate=["albedo"])
     assert set(lit) <= set(clear)
     assert [d for d in clear if d in lit] != lit
     assert all(under[d] >= without[d] for d in lit)

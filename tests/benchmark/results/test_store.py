@@ -96,7 +96,7 @@ def test_rows_carry_what_is_known_of_what_they_are_of(store):
     assert {name: row[name] for name in METRICS} == {
         **dict.fromkeys(METRICS),
         "rms_deg": 0.5,
-        "charged_deg": 0.5,
+        "rms_all_answers_deg": 0.5,
         "availability": 1.0,
     }
     assert [one["rms_deg"] for one in store.rows(unit=None)] == [0.5, 0.6]

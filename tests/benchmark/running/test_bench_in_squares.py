@@ -30,8 +30,8 @@ def sampled(number: int) -> list[tuple[str, str, str]]:
             (row["dataset"], row["extractor"], row["model"])
             for row in Store(PUBLISHED).rows(unit=None)
             if row["condition"] == ON_BENCH
-            and row["charged_deg"] is not None
-            and row["charged_deg"] < 0.1
+            and row["rms_all_answers_deg"] is not None
+            and row["rms_all_answers_deg"] < 0.1
             and "nn" not in row["model"]
             and "orbit" not in row["dataset"]
         }

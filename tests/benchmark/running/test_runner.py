@@ -74,7 +74,7 @@ def test_what_cannot_be_observed_is_left_to_false_suns(store):
     measure(store, parts)
     row = store.query(condition="noisy", extractor="fake-currents")[0]
     assert (row["n_test"], row["n_observable"]) == (400, 350)
-    assert (row["availability"], row["false_sun"]) == (1.0, 1.0)
+    assert (row["availability"], row["false_detection_rate"]) == (1.0, 1.0)
     test = fake_atlas.Diodes().generate("noisy", "test")
     error = np.rad2deg(np.arccos(np.sum(solved(test.observations) * test.sun, axis=1)))[50:]
     assert row["rms_deg"] == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-4)
@@ -109,7 +109,7 @@ def test_another_unit_judges_what_is_observable_by_the_standard_one(store, log, 
     runner.run([dataclasses.replace(standard, unit=1)], store, parts=parts)
     row = store.rows(unit=1)[0]
     assert row["availability"] == 1.0
-    assert row["false_sun"] == (1.0 if dark else None)
+    assert row["false_detection_rate"] == (1.0 if dark else None)
     assert log().count("bound fake-diodes quiet test") == 1
 
 

@@ -101,10 +101,10 @@ def test_a_model_with_a_cliff_at_exact_numbers_is_found_and_a_smooth_one_is_not(
     assert steps == [(0, 2, "fake-coarse")]
 
     one = found.moved_cells[0]
-    before, after = one.columns["charged_deg"]
+    before, after = one.columns["rms_all_answers_deg"]
     assert after > 10.0 * before
     assert str(one) == (
-        f"{one.cell} ({one.inputs}): charged_deg {before} -> {after}, "
+        f"{one.cell} ({one.inputs}): rms_all_answers_deg {before} -> {after}, "
         f"{len(one.columns)} columns differ"
     )
 
@@ -120,4 +120,4 @@ def test_a_cell_that_another_rounding_refuses_is_found_with_the_reason() -> None
     before, after = one.columns["reason"]
     assert before is None
     assert "needs exact steps" in after
-    assert one.columns["charged_deg"][1] is None
+    assert one.columns["rms_all_answers_deg"][1] is None

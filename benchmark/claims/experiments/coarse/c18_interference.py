@@ -24,7 +24,7 @@ from benchmark.claims.experiment import Sketch, Trial
 from benchmark.datasets.standard import pd_maskless_pyramid
 from benchmark.seeds import generator
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 SHARES = (0.005, 0.01, 0.02, 0.05, 0.1)
 #: At which the rules are judged.
 JUDGED = 0.05

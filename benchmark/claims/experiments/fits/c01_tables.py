@@ -30,7 +30,7 @@ from benchmark.datasets.standard import cmos_single_aperture, qpd_single_apertur
 PUBLISHED_DEG = 1.0
 INTERVALS_DEG = (0.5, PUBLISHED_DEG, 2.0, 4.0, 8.0, 16.0, 32.0)
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 
 def trial(number: int) -> Trial:

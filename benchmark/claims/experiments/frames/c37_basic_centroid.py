@@ -25,7 +25,7 @@ from algorithms.extractors.frames.threshold_average import MultipleThresholdCent
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, ship, single
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 METHODS: dict[str, type[Extractor]] = {
     "bcm": BasicCentroid,

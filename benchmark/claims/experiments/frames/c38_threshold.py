@@ -14,7 +14,7 @@ from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, ship, single
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 FRACTIONS = (0.1, 0.3, 0.5)
 

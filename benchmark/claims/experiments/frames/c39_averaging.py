@@ -27,7 +27,7 @@ from benchmark.seeds import generator
 from benchmark.synthetic_features.light import BACKGROUND_E, READ_NOISE_E, detect, peak_e, spots
 from benchmark.synthetic_features.series import REFERENCE_SNR
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 SIDES = (1, 2, 3, 4, 5, 7, 10)
 NUMBERS = tuple(side * side for side in SIDES)

@@ -15,7 +15,7 @@ from benchmark.claims.benches import rank_correlation, ratio, times_s
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import single
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 SIGMA_PX, NOISE = 3.0, 0.01
 NUMBERS = (4, 6, 8, 11, 16, 23, 32, 45, 64)

@@ -19,7 +19,7 @@ from benchmark.claims.experiments.frames.single_discs import (
     single,
 )
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 SHARES = NOISES[:6]
 NOISE = 0.01

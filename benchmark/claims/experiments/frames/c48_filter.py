@@ -12,7 +12,7 @@ from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, ship, single
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 WINDOW_PX = 25
 

@@ -29,7 +29,7 @@ from benchmark.simulator.masks.slits import SlitErrors, slit_row
 from benchmark.simulator.optics.assembly import Assembly
 
 SLITS = (1, 2, 4, 8, 16)
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 _BOUNDED = 60
 
 

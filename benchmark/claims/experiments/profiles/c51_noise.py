@@ -22,7 +22,7 @@ from benchmark.seeds import generator
 
 LOW, HIGH = NOISES.index(0.005), NOISES.index(0.2)
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 
 def trial(number: int) -> Trial:

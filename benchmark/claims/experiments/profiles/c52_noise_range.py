@@ -19,7 +19,7 @@ from benchmark.claims.experiments.profiles.methods import (
 from benchmark.claims.experiments.profiles.slit_images import SlitImages
 from benchmark.seeds import generator
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 
 def trial(number: int) -> Trial:

@@ -26,7 +26,7 @@ IMAGE_E, BACKGROUND_E, READ_NOISE_E = 10_000.0, 20.0, 10.0
 PROFILES, BOUND_PROFILES = 2400, 64
 UM_PER_PX = 1000.0 * DESIGN_PITCH_MM
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 
 def trial(number: int) -> Trial:

@@ -17,7 +17,7 @@ from benchmark.seeds import generator
 
 PITCHES = (2.0, 1.0, 0.5, 0.25)
 
-SKETCH = Sketch(log_across=True)
+SKETCH = Sketch(log_x=True)
 
 
 def trial(number: int) -> Trial:

@@ -1,0 +1,41 @@
+"""Names that changed in 0.2: JSON has both, queries take the old ones, till 0.3."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+#: Members of JSON objects: new name -> old name.
+MEMBERS: Mapping[str, str] = {
+    "own_error_deg": "own_deg",
+    "rms_all_answers_deg": "charged_deg",
+    "false_detection_rate": "false_sun",
+    "ratio_to_smallest": "over_least",
+    "represents": "stands_for",
+    "partial_answer": "finer",
+    "partial_dataset": "finer_dataset",
+    "partial_extractor": "finer_extractor",
+    "partial_model": "finer_model",
+    "partial_own_error_deg": "finer_own_deg",
+    "best_own_error_deg": "best_own_deg",
+    "dataset_own_error_deg": "dataset_own_deg",
+    "first_own_error_deg": "first_own_deg",
+    "other_own_error_deg": "other_own_deg",
+    "runner_up_own_error_deg": "runner_up_own_deg",
+    "partial_over_bound": "finer_over_bound",
+    "partial_availability": "finer_availability",
+    "x_label": "across",
+    "y_label": "up",
+}
+#: Parameters of queries: old name -> new name.
+PARAMETERS: Mapping[str, str] = {"survive": "tolerate"}
+
+
+def with_former_names(document: Any) -> Any:
+    """Return a JSON document with the old names beside the new ones."""
+    if isinstance(document, Mapping):
+        found = {name: with_former_names(value) for name, value in document.items()}
+        return found | {old: found[new] for new, old in MEMBERS.items() if new in found}
+    if isinstance(document, list | tuple):
+        return [with_former_names(item) for item in document]
+    return document
