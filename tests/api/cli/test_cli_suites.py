@@ -72,7 +72,7 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
         (("run",), "study's key and --suite"),
         (("run", "Chang2008", "--suite", "quick"), "study's key and --suite"),
         (("run", "--suite", "quick", "--condition", "nominal"), "--condition goes with a study"),
-        (("verify", "--sample", "0"), "--sample: got 0"),
+        (("verify", "--sample", "0"), "--sample: got '0'"),
         (("gc", "--store", str(PUBLISHED)), "`sunatlas leaderboard`"),
     ],
 )

@@ -85,7 +85,7 @@ def test_a_calibration_says_what_was_found_read_and_left_out(
 
 @pytest.mark.parametrize(
     "given",
-    [*(("--config", "a.toml"), ("--init", "a.toml"), ("--certificate", "a.xml"))],
+    [("--config", "a.toml"), ("--init", "a.toml"), ("--certificate", "a.xml")],
 )
 def test_options_that_a_correction_does_not_take_are_refused_by_name(
     given: tuple[str, ...], tmp_path: Path
@@ -93,6 +93,6 @@ def test_options_that_a_correction_does_not_take_are_refused_by_name(
     call = ("calibrate", "few.csv", "--onto", "old.json", "--out", tmp_path / "out", *given)
     shown = sunatlas(*call)
     assert shown.exit_code == 2
-    assert shown.stderr.rstrip().endswith(f"leave out {given[0]}")
+    assert shown.stderr.rstrip().endswith(f"--onto goes without {given[0]}")
     assert not (tmp_path / "out").exists()
     assert not Path(given[-1]).exists()
