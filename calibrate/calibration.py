@@ -13,21 +13,24 @@ from algorithms.chain import Scored
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.threads import one_thread
 from calibrate.causes.applying import applied_to, one_plane, read_as
-from calibrate.causes.bad_cells import joined_levels
+from calibrate.causes.bad_cells import ReadingLimits, joined_levels, limits_of
 from calibrate.causes.held_out import Part, parts_of
-from calibrate.causes.less_light import doubt_of_light
-from calibrate.causes.limits import ReadingLimits, limits_of
-from calibrate.causes.removed import unexplained
-from calibrate.causes.untested import untested_in
+from calibrate.causes.untested import doubt_of_light, untested_in
+from calibrate.conventions.channels import face_normals
 from calibrate.conventions.finding import Finding
-from calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
-from calibrate.face_normals import face_normals
+from calibrate.exclusions import (
+    WRONG,
+    Excluded,
+    RunOffset,
+    excluded_of,
+    kept_by_model,
+    sound_of,
+    unexplained,
+)
 from calibrate.halves import halves
-from calibrate.intervals.left_out import errors_left_out
-from calibrate.one_axis.calibrated import calibration_of_axis
+from calibrate.one_axis import calibration_of_axis
 from calibrate.readings import Readings
 from calibrate.robust import wrong_poses
-from calibrate.runs import RunOffset
 from calibrate.selection import (
     Candidate,
     applicable,
@@ -45,6 +48,7 @@ from calibrate.table import Table
 from calibrate.uncertainty import (
     Intervals,
     covariance_of,
+    errors_left_out,
     intervals,
     noise_around,
     noise_deg,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +13,13 @@ from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, SensorGeometry
 from calibrate.ambiguity import folded
-from calibrate.readings import Readings
-from calibrate.robust import normalised
-from calibrate.runs import RunOffset, off_runs
+from calibrate.readings import BEHIND, FAINT_ROWS, NO_SUM, Readings
+from calibrate.robust import normalised, robust_map
 from calibrate.selection import Candidate, fitted, unbounded
 
 #: Why samples are left out.
 WRONG, FOLD = "wrong pose", "reading that another direction gives too"
+DUPLICATE = "duplicate of another row"
 #: Residuals of samples left out, over their robust scale, that list a sample as wrong after all.
 _WRONG_OF_MODEL = 5.0
 #: And below which a sample that no smooth map explains is taken back.
@@ -110,3 +112,148 @@ def _around(features: Floats, inside: NDArray[np.bool_], errors: Floats) -> Floa
 
 def _places(readings: Readings) -> NDArray[np.int64]:
     return readings.run * np.int64(10_000_000) + readings.rows
+
+
+_FEWEST, _MOST_RUNS = 20, 40
+
+
+@dataclass(frozen=True)
+class RunOffset:
+    """A run whose directions are off by a constant.
+
+    Attributes
+    ----------
+    run : int
+        Its number.
+    offset_deg : float
+        Size of the rotation, degrees.
+    others_deg : float
+        Median of the other runs' own, degrees.
+    """
+
+    run: int
+    offset_deg: float
+    others_deg: float
+
+
+def off_runs(readings: Readings) -> list[RunOffset]:
+    """Return runs off from what the others agree on, the farthest first; fewer than half of them.
+
+    The rotation between every two runs that overlap is that between one run's directions and those
+    that a map fitted to the other gives; a run's own is the median over the others.
+    """
+    numbers = [int(n) for n in np.unique(readings.run) if (readings.run == n).sum() >= _FEWEST]
+    if not 3 <= len(numbers) <= _MOST_RUNS:
+        return []
+    parts = {n: readings.only(readings.run == n) for n in numbers}
+    maps = {n: robust_map(part.features, part.sun)[0] for n, part in parts.items()}
+    turns: dict[int, list[float]] = {n: [] for n in numbers}
+    scatters: dict[int, list[float]] = {n: [] for n in numbers}
+    for one in numbers:
+        for other in numbers:
+            if one == other:
+                continue
+            part = parts[other]
+            scaled = (normalised(part.features) - maps[one].middle) / maps[one].width
+            shared = (np.abs(scaled) <= 1.0).all(axis=1)
+            if shared.sum() < _FEWEST:
+                continue
+            turn, rest = _rotation(maps[one].predict(part.features[shared]), part.sun[shared])
+            for n in (one, other):
+                turns[n].append(turn)
+                scatters[n].append(rest / np.sqrt(shared.sum()))
+    own = {n: float(np.median(turns[n])) for n in numbers if len(turns[n]) >= 4}
+    found = []
+    for number, size in sorted(own.items(), key=lambda item: -item[1]):
+        usual = float(np.median([value for n, value in own.items() if n != number] or [np.inf]))
+        if size > max(5.0 * usual, 6.0 * float(np.median(scatters[number])), 1e-6):
+            found.append(RunOffset(number, size, usual))
+    return found if len(found) < len(numbers) / 2 else []
+
+
+def _rotation(predicted: Floats, sun: Floats) -> tuple[float, float]:
+    """Size of the small rotation between two sets of directions, and what it leaves, degrees."""
+    # median of the offsets and not the least-squares rotation: some poses may be wrong
+    small = np.cross(predicted, sun)
+    design = np.zeros((3 * len(sun), 3))
+    for at, axis in enumerate(np.eye(3)):
+        design[:, at] = np.cross(axis, predicted).reshape(-1)
+    aim = (sun - predicted).reshape(-1)
+    weight = np.ones(len(sun))
+    turn = np.zeros(3)
+    left = small
+    for _ in range(20):
+        root = np.repeat(np.sqrt(weight), 3)
+        turn = np.linalg.lstsq(design * root[:, None], aim * root, rcond=1e-6)[0]
+        left = (aim - design @ turn).reshape(-1, 3)
+        size = np.linalg.norm(left, axis=1)
+        weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-12))
+    return float(np.degrees(np.linalg.norm(turn))), float(
+        np.degrees(np.median(np.linalg.norm(left, axis=1)))
+    )
+
+
+#: Share of rows that may be left out without a cause, and with one.
+_UNNAMED, _ALL = 0.02, 0.5
+#: Wrong poses among the nearest poses of one, over their share of all, from which they gather.
+_NEIGHBOURS, _GATHERED = 8, 3.0
+_MOST_SCATTERED = 0.15
+
+
+def unexplained(
+    readings: Readings, excluded: Sequence[Excluded], wrong: Readings, half_fov_deg: float | None,
+    fold_deg: float | None,
+) -> str:  # fmt: skip
+    """Return, in a sentence, which rows were left out without a known cause; empty where few were.
+
+    Wrong poses are known as such where they lie among others that are right, at most 15 % of all:
+    where they gather, the sensor is what does not do as the others say. What another direction
+    reads too is known beyond the stated field of view alone. A row that is there twice loses
+    nothing of the field and does not count.
+
+    Parameters
+    ----------
+    readings : Readings
+        That were fitted, with what was dropped while reading.
+    excluded : sequence of Excluded
+    wrong : Readings
+        The wrong poses.
+    half_fov_deg, fold_deg : float or None
+        Half the field of view as stated, and the smallest off-axis angle that folds.
+    """
+    reasons = Counter(one.reason for one in excluded if one.reason != DUPLICATE)
+    dropped = {name: n for name, n in readings.dropped.items() if name != BEHIND}
+    out = sum(reasons.values()) + sum(dropped.values())
+    whole = len(readings) + out
+    unnamed = {NO_SUM: dropped.get(NO_SUM, 0)}
+    beyond = half_fov_deg is not None and fold_deg is not None and fold_deg >= half_fov_deg
+    if not beyond:
+        unnamed[FOLD] = reasons[FOLD]
+    share = len(wrong) / whole
+    if share > _MOST_SCATTERED or _gathered(readings, wrong):
+        unnamed[WRONG] = len(wrong)
+    count = sum(unnamed.values())
+    if count > _UNNAMED * whole:
+        said = ", ".join(f"{n} {name}" for name, n in unnamed.items() if n)
+        return f"{count} of {whole} rows were left out without a known cause ({said})"
+    if out > _ALL * whole:
+        most = Counter({**reasons, **dropped}).most_common(3)
+        said = ", ".join(f"{n} {name}" for name, n in most)
+        return (
+            f"{out} of {whole} rows were left out ({said}): what is left is not the sensor's field"
+        )
+    if dropped.get(FAINT_ROWS, 0) > _ALL * whole:
+        return f"{dropped[FAINT_ROWS]} of {whole} rows have hardly any light"
+    return ""
+
+
+def _gathered(readings: Readings, wrong: Readings) -> bool:
+    """Say whether wrong poses lie next to each other more than chance has them do."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
+
+    if len(wrong) < _NEIGHBOURS:
+        return False
+    every = np.vstack([wrong.sun, readings.sun])
+    near = np.asarray(cKDTree(every).query(wrong.sun, k=min(_NEIGHBOURS + 1, len(every)))[1])[:, 1:]
+    share = len(wrong) / len(every)
+    return bool((near < len(wrong)).mean() > min(_GATHERED * share, 0.5 + share / 2.0))

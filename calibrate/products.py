@@ -20,14 +20,12 @@ from calibrate.documents import (
     versions,
     with_correction,
 )
-from calibrate.flight.code import FlightCode, flight_code
-from calibrate.flight.corrected import corrected_code
+from calibrate.flight.code import FlightCode, corrected_code, flight_code
 from calibrate.flight.names import c_name
 from calibrate.flight.program import NoCodeError
-from calibrate.one_axis.curve import AxisCurve
+from calibrate.one_axis import AxisCurve
 from calibrate.recalibration import Correction, poses_of
-from calibrate.report.correction import correction_report, outcomes_of
-from calibrate.report.page import Asked, report
+from calibrate.report.page import Asked, correction_report, outcomes_of, report
 from calibrate.report.requirement import Judged, Requirement
 from files.atomic import replace_in_directory
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.angles import sun_from_angles, sun_from_rotations
 from algorithms.contract import FeatureKind, Floats
-from calibrate.forms.almanac import sun_by_date
-from calibrate.forms.attitudes import rotated
+from calibrate.forms.attitudes import rotated, sun_by_date
 from calibrate.forms.units import DEGREES, KELVIN, SECONDS, TimeUnit
 from calibrate.settings import (
     AngleForm,

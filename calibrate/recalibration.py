@@ -11,7 +11,7 @@ import numpy as np
 
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Floats, UnusableDataError
-from calibrate.one_axis.curve import AxisCurve
+from calibrate.one_axis import AxisCurve
 from calibrate.readings import Readings, joined, readings_of
 from calibrate.table import read_table
 from calibrate.terms.age import Changes, Kind, answered, fit

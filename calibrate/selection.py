@@ -25,8 +25,8 @@ from algorithms.contract import (
 )
 from algorithms.discovery import discover_chains
 from calibrate.causes.light import LESS_LIGHT
+from calibrate.conventions.channels import face_normals
 from calibrate.conventions.findings import linear_map
-from calibrate.face_normals import face_normals
 from calibrate.readings import Readings
 from calibrate.settings import Settings
 from calibrate.terms.temperature import with_temperature

@@ -13,10 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from calibrate.forms.cells import numbers_of
-from calibrate.forms.refused import TableError
-from calibrate.forms.text import Cells, cells_of_text
+from calibrate.forms.text import Cells, TableError, cells_of_text, cells_of_workbook
 from calibrate.forms.units import named, unit_of
-from calibrate.forms.workbook import cells_of_workbook
 from calibrate.settings import FileSettings
 from files.reading import read_bytes
 

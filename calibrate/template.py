@@ -8,9 +8,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from calibrate.forms.config_lines import by_order
 from calibrate.forms.units import named
-from calibrate.roles import Understood, understood
+from calibrate.roles import Understood, by_order, understood
 from calibrate.settings import (
     BenchSettings,
     CertificateSettings,

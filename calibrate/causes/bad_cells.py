@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from calibrate.exclusions import Excluded
+from calibrate.exclusions import DUPLICATE, Excluded
 from calibrate.forms.units import DEGREES
-from calibrate.readings import directions_of, runs_of
+from calibrate.readings import FAINT, Readings, directions_of, runs_of
 from calibrate.settings import Settings
 from calibrate.table import Table
 
@@ -27,7 +27,6 @@ _CLIPPED, _OVER_NEXT, _NEXT = 4, 4.0, 10
 _UNLIT = 0.25
 #: Rows with one reading to be no reading, and their directions' extent over the field's.
 _STUCK, _STUCK_EXTENT = 3, 0.1
-DUPLICATE = "duplicate of another row"
 
 
 @dataclass(frozen=True)
@@ -228,3 +227,50 @@ def joined_levels(parts: list[BadCells]) -> Mapping[str, Level]:
             known = found.get(name, Level())
             found[name] = Level(max(known.low, level.low), min(known.high, level.high))
     return found
+
+
+#: Most light that is answered, in units of the most that was measured.
+_MORE_LIGHT = 2.0
+
+
+@dataclass(frozen=True)
+class ReadingLimits:
+    """Readings between these limits, the limits themselves excluded, may be used.
+
+    Attributes
+    ----------
+    low, high : tuple of float
+        By column of readings, in the file's own units: levels at which readings were found to be
+        sentinels, saturated or clipped; minus and plus infinity where none was found.
+    least_light, most_light : float
+        Of the sum of the readings less dark over gain: a tenth of the usual light, below which rows
+        are left out, and twice the most light that was measured. 0 and infinity where readings do
+        not measure light.
+    """
+
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    least_light: float
+    most_light: float
+
+
+def limits_of(readings: Readings, settings: Settings, levels: Mapping[str, Level]) -> ReadingLimits:
+    """Return the limits of readings that were fitted.
+
+    Parameters
+    ----------
+    readings : Readings
+        That were fitted.
+    settings : Settings
+    levels : mapping of str to Level
+        Placeholder values by column, such as -999, found by `calibrate.causes.bad_cells`.
+    """
+    known = [levels.get(name, Level()) for name in settings.readings.columns]
+    least, most = 0.0, np.inf
+    if settings.readings.kind in ("quadrants", "electrodes", "channels"):
+        total = readings.raw.sum(axis=1)
+        least = FAINT * float(np.percentile(total, 95))
+        most = _MORE_LIGHT * float(total.max())
+    return ReadingLimits(
+        tuple(one.low for one in known), tuple(one.high for one in known), max(least, 0.0), most
+    )

@@ -16,9 +16,8 @@ import numpy as np
 
 from calibrate.flight.answers import Answers
 from calibrate.flight.names import comment, comment_lines
-from calibrate.flight.program import Program, Step, Thermometer
+from calibrate.flight.program import Program, Step, Thermometer, Vectors
 from calibrate.flight.runtime import STATUSES
-from calibrate.flight.vectors import Vectors
 
 _TEMPLATES = Path(__file__).parent / "c"
 _PARTS = ("readings.c", "plane.c", "faces.c", "assembled.c")

@@ -2,32 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Floats
 from calibrate.calibration import Calibration
-from calibrate.flight.answers import Answers, answers_of
+from calibrate.documents import SavedCalibration
+from calibrate.flight.answers import Answers, answers_at, answers_of
 from calibrate.flight.c_source import c_files
 from calibrate.flight.faces import faces_steps
 from calibrate.flight.plane import plane_steps
-from calibrate.flight.program import NoCodeError, Program, Step, Thermometer, run
-from calibrate.flight.python_source import python_module
-from calibrate.flight.raw import (
-    LARGEST,
-    RawLimits,
-    columns_of,
-    limits_of,
-    raw_readings,
-    raw_steps,
+from calibrate.flight.program import (
+    NoCodeError,
+    Program,
+    Step,
+    Thermometer,
+    Vectors,
+    program_of,
+    run,
+    vectors_of,
 )
+from calibrate.flight.python_source import python_module
 from calibrate.flight.runtime import STATUSES
-from calibrate.flight.vectors import Vectors, vectors_of
 from calibrate.forms.units import KELVIN
-from calibrate.settings import RowSettings
+from calibrate.readings import MATRICES, Readings
+from calibrate.selection import deviation_of
+from calibrate.settings import ReadingsSettings, RowSettings, Settings
 
 #: Share of the model's error above which what the code adds is refused.
 _MOST_ADDED = 0.1
@@ -242,3 +246,152 @@ def _clipped(limits: RawLimits, place: int) -> str:
     low, high = float(limits.low[place]), float(limits.high[place])
     said = f", clipped at {low:.6g} and below" if low > -LARGEST else ""
     return said + (f", clipped at {high:.6g} and above" if high < LARGEST else "")
+
+
+def corrected_code(saved: SavedCalibration, poses: Readings) -> FlightCode:
+    """Return the flight code of a corrected calibration.
+
+    Parameters
+    ----------
+    saved : SavedCalibration
+        With its correction.
+    poses : Readings
+        By its settings: those it was corrected by. Their raw rows compare code and calibration.
+
+    Raises
+    ------
+    NoCodeError
+        If the document holds no program, or the code departs from the corrected calibration by
+        more than a tenth of its error.
+    """
+    program = _corrected(program_of(saved.document.get("flight")), saved)
+    made = program.steps[0].constants
+    raw = np.empty((len(poses), len(program.columns)))
+    raw[:, made["place"]] = raw_readings(poses, saved.settings.readings)
+    kelvin = poses.context.get("temperature_K", np.zeros(len(poses)))
+    # steps answer in the old frame, which is turned last
+    model = saved.predict(poses.features, poses.context) @ saved.rotation
+    limits = RawLimits(made["low"], made["high"], made["least"], made["most"])
+    found = judged_code(
+        program, _answers(saved, poses), limits, raw, kelvin, model, saved.stated_deg
+    )
+    vectors = replace(found.vectors, sun=found.vectors.sun @ saved.rotation.T)
+    return replace(found, vectors=vectors, judged_on="of the new poses")
+
+
+def _corrected(program: Program, saved: SavedCalibration) -> Program:
+    """Return the program with the dark levels and gains of a corrected calibration."""
+    stated = saved.corrected.settings(saved.settings).readings
+    count = len(stated.columns)
+    if len(program.steps[0].constants["place"]) != count:
+        raise NoCodeError("the old document's program is of other columns than its settings")
+    sign = -1.0 if stated.inverted else 1.0
+    constants = {
+        **program.steps[0].constants,
+        "dark": np.broadcast_to(np.asarray(stated.dark, dtype=np.float64), count).copy(),
+        "gain": sign * np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), count),
+    }
+    return replace(
+        program, steps=(replace(program.steps[0], constants=constants), *program.steps[1:])
+    )
+
+
+def _answers(saved: SavedCalibration, poses: Readings) -> Answers:
+    """Return the angles' form, the 1-sigma by place before the turn, and the turn."""
+    sigma = np.nan
+    if saved.intervals is None:
+        stated = saved.factor * deviation_of(saved.model, poses.features, poses.context)
+        sigma = float(np.sqrt(np.nanmean(stated**2)))
+    found = answers_at(saved.settings.direction.form, saved.intervals, sigma)
+    return replace(found, rotation=saved.rotation)
+
+
+#: Beyond this a reading is no number; of limits, that there is none.
+LARGEST = 1e30
+#: Of a limit, how far a reading may be rounded in the file and not on board.
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True)
+class RawLimits:
+    """What readings of a sensor may be.
+
+    Attributes
+    ----------
+    low, high : ndarray, shape (K,)
+        Of each column of the settings: readings at or beyond them are clipped.
+    least_light, most_light : float
+        Of the sum of readings less dark over gain.
+    """
+
+    low: Floats
+    high: Floats
+    least_light: float
+    most_light: float
+
+
+def limits_of(found: Calibration) -> RawLimits:
+    """Return the limits that a calibration found, as finite numbers that C can hold."""
+    count, known = len(found.settings.readings.columns), found.limits
+    of_light = np.isfinite(known.most_light)
+    low = np.maximum(np.array(known.low or (-np.inf,) * count), -LARGEST)
+    high = np.minimum(np.array(known.high or (np.inf,) * count), LARGEST)
+    return RawLimits(
+        np.where(low > -LARGEST, low + _ROUNDING * np.abs(low), low),
+        np.where(high < LARGEST, high - _ROUNDING * np.abs(high), high),
+        float(known.least_light) if of_light else -LARGEST,
+        float(known.most_light) if of_light else LARGEST,
+    )
+
+
+def raw_readings(readings: Readings, settings: ReadingsSettings) -> Floats:
+    """Return the readings (N, K) as the file had them, in the order of the settings' columns."""
+    sign = -1.0 if settings.inverted else 1.0
+    return np.asarray(sign * readings.raw * np.asarray(settings.gain) + np.asarray(settings.dark))
+
+
+def columns_of(found: Calibration) -> tuple[str, ...]:
+    """Return the columns of readings in the file's order."""
+    known = set(found.settings.readings.columns)
+    inside = tuple(name for name in found.columns if name in known)
+    return inside if len(inside) == len(known) else found.settings.readings.columns
+
+
+def places_of(columns: Sequence[str], settings: ReadingsSettings) -> NDArray[np.int64]:
+    """Return the place (K,) in the file's order of each column of the settings."""
+    return np.array([list(columns).index(name) for name in settings.columns])
+
+
+def raw_steps(columns: Sequence[str], settings: Settings, limits: RawLimits) -> list[Step]:
+    """Return the steps from raw readings to features."""
+    stated = settings.readings
+    count = len(stated.columns)
+    sign = -1.0 if stated.inverted else 1.0
+    steps = [
+        Step(
+            "readings",
+            {
+                "readings": count,
+                "place": places_of(columns, stated),
+                "dark": np.broadcast_to(np.asarray(stated.dark, dtype=np.float64), count).copy(),
+                "gain": sign
+                * np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), count).copy(),
+                "low": np.asarray(limits.low, dtype=np.float64),
+                "high": np.asarray(limits.high, dtype=np.float64),
+                "largest": LARGEST,
+                "least": float(limits.least_light),
+                "most": float(limits.most_light),
+            },
+            9 * count + 2,
+        )
+    ]
+    if stated.kind == "quadrants":
+        steps.append(Step("quadrants", {}, 12))
+    if stated.kind == "electrodes":
+        steps.append(Step("electrodes", {}, 8))
+    matrix = np.eye(2)
+    for transform in settings.apply:
+        matrix = np.asarray(MATRICES[transform]) @ matrix
+    if stated.kind != "channels" and not np.array_equal(matrix, np.eye(2)):
+        steps.append(Step("axes", {"matrix": matrix}, 6))
+    return steps

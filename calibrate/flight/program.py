@@ -1,16 +1,17 @@
-"""A calibrated sensor as steps with constants, from raw readings to a direction."""
+"""A calibrated sensor as steps with constants, from raw readings to a direction, and its tests."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.angles import separation_deg
 from algorithms.contract import Floats
-from calibrate.flight import runtime, runtime_faces
+from calibrate.flight import runtime
 
 
 class NoCodeError(ValueError):
@@ -97,9 +98,8 @@ def step_functions() -> dict[str, Callable[..., Any]]:
     """Return the function of each step by its name."""
     return {
         name: function
-        for module in (runtime, runtime_faces)
-        for name, function in vars(module).items()
-        if callable(function) and getattr(function, "__module__", "") == module.__name__
+        for name, function in vars(runtime).items()
+        if callable(function) and getattr(function, "__module__", "") == runtime.__name__
     }
 
 
@@ -134,3 +134,158 @@ def run(
     sun = np.array(sun, dtype=np.float64)
     sun[status != 0] = np.nan
     return values, sun, status
+
+
+_DAMAGED = (KeyError, TypeError, ValueError, AttributeError)
+
+
+def stored_program(program: Program) -> dict[str, Any]:
+    """Return a program as what JSON can say."""
+    steps = [
+        {
+            "name": step.name,
+            "constants": {
+                name: np.asarray(value).tolist() for name, value in step.constants.items()
+            },
+            "operations": step.operations,
+            "calls": step.calls,
+        }
+        for step in program.steps
+    ]
+    thermometer = None if program.thermometer is None else asdict(program.thermometer)
+    return {
+        "columns": list(program.columns),
+        "steps": steps,
+        "thermometer": thermometer,
+        "words": program.words,
+    }
+
+
+def program_of(stored: Mapping[str, Any] | None) -> Program:
+    """Return the program that a document holds.
+
+    Raises
+    ------
+    NoCodeError
+        If it holds none, or what is none.
+    """
+    if stored is None:
+        raise NoCodeError(
+            "the old document holds no program: no code was written with it, or it is older than "
+            "programs in documents"
+        )
+    try:
+        steps = tuple(
+            Step(
+                str(one["name"]),
+                {name: _constant(value) for name, value in one["constants"].items()},
+                int(one["operations"]),
+                int(one["calls"]),
+            )
+            for one in stored["steps"]
+        )
+        measured = stored["thermometer"]
+        thermometer = None if measured is None else Thermometer(**measured)
+        made = Program(tuple(stored["columns"]), steps, thermometer, str(stored["words"]))
+    except _DAMAGED as error:
+        raise NoCodeError(f"the old document's program is damaged: {error}") from error
+    unknown = [step.name for step in steps if step.name not in step_functions()]
+    if unknown or not steps or steps[0].name != "readings":
+        raise NoCodeError(f"the old document's program is damaged: steps {unknown or 'missing'}")
+    return made
+
+
+def _constant(value: Any) -> Any:
+    return np.asarray(value) if isinstance(value, list) else value
+
+
+#: Rows with an answer.
+_ROWS = 20
+#: A reading that is none.
+_NONE = 1e33
+
+
+@dataclass(frozen=True)
+class Vectors:
+    """Raw readings in the file's order and what is expected of them.
+
+    Attributes
+    ----------
+    values : ndarray, shape (V, K)
+    temperature : ndarray, shape (V,)
+        As the file has it.
+    sun : ndarray, shape (V, 3)
+        Of the model; NaN where the status is not 0.
+    status : ndarray of int, shape (V,)
+    largest_deg : float
+        Largest difference of the program from the model on them.
+    """
+
+    values: Floats
+    temperature: Floats
+    sun: Floats
+    status: NDArray[np.int64]
+    largest_deg: float
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+def vectors_of(program: Program, raw: Floats, kelvin: Floats, model: Floats) -> Vectors:
+    """Return rows spread over the field, then rows that must be refused.
+
+    Parameters
+    ----------
+    program : Program
+    raw : ndarray, shape (N, K)
+        Of the calibration, in the file's order.
+    kelvin : ndarray, shape (N,)
+    model : ndarray, shape (N, 3)
+        Answers of the fitted model; NaN where it has none.
+    """
+    _, sun, status = run(program.steps, raw, kelvin)
+    off = separation_deg(sun, model)
+    known = np.flatnonzero((status == 0) & np.isfinite(off))
+    chosen = known[_spread(model[known])]
+    refused, warm = _refused(program, raw[chosen[0]], float(kelvin[chosen[0]]))
+    _, nothing, stated = run(program.steps, refused, warm)
+    warmth = np.concatenate([kelvin[chosen], warm])
+    return Vectors(
+        np.vstack([raw[chosen], refused]),
+        warmth if program.thermometer is None else program.thermometer.value(warmth),
+        np.vstack([model[chosen], nothing]),
+        np.concatenate([status[chosen], stated]).astype(np.int64),
+        float(off[chosen].max()),
+    )
+
+
+def _spread(sun: Floats) -> NDArray[np.int64]:
+    """Places of directions (N, 3) far from each other: the farthest from those taken, in turns."""
+    chosen = [int(np.argmin(np.linalg.norm(sun - sun.mean(axis=0), axis=1)))]
+    nearest = np.full(len(sun), np.inf)
+    while len(chosen) < min(_ROWS, len(sun)):
+        nearest = np.minimum(nearest, np.linalg.norm(sun - sun[chosen[-1]], axis=1))
+        chosen.append(int(nearest.argmax()))
+    return np.array(chosen)
+
+
+def _refused(program: Program, usual: Floats, kelvin: float) -> tuple[Floats, Floats]:
+    """Rows that no program answers: no number, no light, too much, clipped, zeros, cold."""
+    made = program.steps[0].constants
+    place, dark, gain = made["place"], made["dark"], made["gain"]
+    rows = [usual.copy(), np.zeros_like(usual)]
+    rows[0][-1] = _NONE
+    if made["least"] > -_NONE / 1e6:  # readings that add up to the light
+        for light in (0.0, 1e3):
+            row = usual.copy()
+            row[place] = dark + light * gain * (usual[place] - dark) / gain
+            rows.append(row)
+    for limit in (made["low"], made["high"]):
+        for at in np.flatnonzero(np.abs(limit) < made["largest"])[:1]:
+            row = usual.copy()
+            row[place[at]] = limit[at]
+            rows.append(row)
+    values, warm = np.vstack(rows), np.full(len(rows), kelvin)
+    if program.thermometer is not None:
+        values, warm = np.vstack([values, usual]), np.append(warm, kelvin + 500.0)
+    return values, warm

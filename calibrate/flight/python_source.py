@@ -11,9 +11,8 @@ import numpy as np
 
 from calibrate.flight.answers import Answers
 from calibrate.flight.names import comment, comment_lines
-from calibrate.flight.program import Program, step_functions
+from calibrate.flight.program import Program, Vectors, step_functions
 from calibrate.flight.runtime import STATUSES
-from calibrate.flight.vectors import Vectors
 
 
 def python_module(

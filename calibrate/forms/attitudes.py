@@ -1,4 +1,4 @@
-"""Directions of the light in the sensor's frame from attitudes: quaternions and matrices."""
+"""Directions of the light in the sensor's frame: by attitudes, and the Sun's place by date."""
 
 from __future__ import annotations
 
@@ -77,3 +77,58 @@ def _matrices(quaternions: Floats) -> Floats:
         ],
         axis=1,
     )
+
+
+#: Seconds of 1970 at J2000.0 (12 h terrestrial time of 1 January 2000), and of a century.
+_J2000_S, _CENTURY_S = 946_728_000.0, 36_525 * 86_400.0
+#: Terrestrial time minus UTC since 2017, seconds.
+_TT_UTC_S = 69.184
+#: Aberration of the Sun, degrees: light time and the Earth's motion together.
+_ABERRATION_DEG = -0.005693
+#: Precession in longitude since J2000, degrees a century.
+_PRECESSION_DEG = (1.396971, 0.0003086)
+_OBLIQUITY_DEG = 23.4392911
+#: What planets and the Moon add to the longitude: amplitude, phase and rate, degrees and a century.
+_TERMS = (
+    (0.00134, 153.23, 22518.7541),  # Venus
+    (0.00154, 216.57, 45037.5082),
+    (0.00200, 312.69, 32964.3577),  # Jupiter
+    (0.00179, 350.74 - 90.0, 445267.1142),  # Moon
+    (0.00178, 231.19 - 90.0, 20.20),
+)
+
+
+def sun_by_date(seconds: Floats) -> Floats:
+    """Return the Sun's apparent direction from Earth's centre in the frame of J2000.
+
+    By the Sun's mean elements with the largest perturbations (Meeus, Astronomical Formulae for
+    Calculators, chapter 18). Light time and the aberration of the Earth's motion are included, a
+    satellite's own motion (up to 0.0015 deg) and parallax (0.003 deg in a low orbit) are not.
+
+    Parameters
+    ----------
+    seconds : ndarray, shape (N,)
+        Since 1970, UTC.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+        Unit vectors.
+    """
+    t = (np.asarray(seconds, dtype=np.float64) + _TT_UTC_S - _J2000_S) / _CENTURY_S
+    t1900 = t + 1.0
+    mean = 279.69668 + 36000.76892 * t1900 + 0.0003025 * t1900**2
+    anomaly = np.radians(
+        358.47583 + 35999.04975 * t1900 - 0.000150 * t1900**2 - 0.0000033 * t1900**3
+    )
+    centre = (
+        (1.919460 - 0.004789 * t1900 - 0.000014 * t1900**2) * np.sin(anomaly)
+        + (0.020094 - 0.000100 * t1900) * np.sin(2.0 * anomaly)
+        + 0.000293 * np.sin(3.0 * anomaly)
+    )
+    planets = sum(size * np.cos(np.radians(phase + rate * t1900)) for size, phase, rate in _TERMS)
+    precession = _PRECESSION_DEG[0] * t + _PRECESSION_DEG[1] * t**2
+    longitude = np.radians(mean + centre + planets + _ABERRATION_DEG - precession)
+    tilt = np.radians(_OBLIQUITY_DEG)
+    sine = np.sin(longitude)
+    return np.column_stack([np.cos(longitude), sine * np.cos(tilt), sine * np.sin(tilt)])

@@ -1,8 +1,10 @@
-"""A text file as rows of cells: separator, decimal sign, header, units and comments found."""
+"""Text files and Excel workbooks as rows of cells: encoding, separator, header and units found."""
 
 from __future__ import annotations
 
+import codecs
 import csv
+import datetime as dt
 import io
 import re
 from collections.abc import Sequence
@@ -12,17 +14,89 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from calibrate.forms.decoding import decoded
 from calibrate.forms.layout import (
     SAMPLED,
     Layout,
     is_comment,
     layout_of,
+    numeric_share,
     separator_of,
     without_mark,
 )
-from calibrate.forms.refused import TableError
 from calibrate.settings import FileSettings
+
+
+class TableError(ValueError):
+    """A file that is no table of numbers: what was expected, what came, in which row and column."""
+
+
+#: Marks at the start of a file and what they say; longer ones first.
+_MARKS = (
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+#: Of bytes that are no UTF-8: one byte a letter, as instruments' software writes them.
+_OTHERS = ["cp1252", "mac_roman", "cp850"]
+_WITHOUT_MARK = ["utf_16_le", "utf_16_be"]
+#: Signs of units, by which encodings that all fit are told apart.
+_SIGNS = "°µαβθφ"
+_SAMPLED = 50_000
+
+
+def decoded(data: bytes, source: str, encoding: str | None = None) -> tuple[str, str]:
+    """Return a file's text and the name of its encoding.
+
+    Parameters
+    ----------
+    data : bytes
+        Of the file.
+    source : str
+        Its name, for messages.
+    encoding : str, optional
+        As the reader states it; found otherwise.
+
+    Raises
+    ------
+    TableError
+        If the bytes are no text of that encoding, or hold null characters.
+    """
+    name = encoding or _encoding(data)
+    try:
+        text = data.decode(name)
+    except (UnicodeDecodeError, UnicodeError, LookupError) as error:
+        at = error.start if isinstance(error, UnicodeDecodeError) else 0
+        row = data.count(b"\n", 0, at) + 1
+        raise TableError(f"{source}, row {row}: expected {name} text ({error})"[:200]) from None
+    if "\x00" in text:
+        row = text.count("\n", 0, text.index("\x00")) + 1
+        raise TableError(f"{source}, row {row}: a null character")
+    return text.removeprefix("\ufeff"), name.removesuffix("-sig")
+
+
+def _encoding(data: bytes) -> str:
+    from charset_normalizer import from_bytes  # noqa: PLC0415 - for a file that is no UTF-8
+
+    marked = next((name for mark, name in _MARKS if data.startswith(mark)), None)
+    if marked is not None:
+        return marked
+    if b"\x00" in data and (found := from_bytes(data[:_SAMPLED], cp_isolation=_WITHOUT_MARK)):
+        best = found.best()
+        if best is not None:
+            return best.encoding.replace("_", "-")
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        pass
+    else:
+        return "utf-8"
+    matches = [one.encoding for one in from_bytes(data[:_SAMPLED], cp_isolation=_OTHERS)]
+    known = [name for name in _OTHERS if name in matches] or ["cp1252"]
+    text = {name: data[:_SAMPLED].decode(name, errors="replace") for name in known}
+    return max(known, key=lambda name: sum(text[name].count(sign) for sign in _SIGNS))
+
 
 _SEPARATORS = (";", "\t", ",", "|", " ")
 _WORDS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
@@ -184,3 +258,64 @@ def _notes(encoding: str, separator: str, decimal: str, layout: Layout, comments
     if comments:
         said.append(f"{comments} comment line{'s' if comments > 1 else ''} left out")
     return said
+
+
+def cells_of_workbook(data: bytes, source: str, stated: FileSettings, most_rows: int) -> Cells:
+    """Return the cells of a workbook's sheet.
+
+    Parameters
+    ----------
+    data : bytes
+        Of the file.
+    source : str
+        Its name, for messages.
+    stated : FileSettings
+        What the reader says of it; the rest is found.
+    most_rows : int
+        Rows that are taken at most of each sheet.
+
+    Raises
+    ------
+    TableError
+        If it is no workbook, or has no such sheet.
+    """
+    try:
+        sheets = pd.read_excel(
+            io.BytesIO(data), sheet_name=None, header=None, nrows=most_rows, dtype=object
+        )
+    except Exception as error:  # noqa: BLE001 - openpyxl raises many kinds for damaged files
+        raise TableError(f"{source}: expected an Excel workbook ({str(error)[:80]})") from None
+    if stated.sheet is not None and stated.sheet not in sheets:
+        raise TableError(
+            f"{source}: no sheet {stated.sheet!r} (there are {', '.join(map(str, sheets))})"
+        )
+    texts = {str(name): sheet.map(_as_text) for name, sheet in sheets.items()}
+    name = stated.sheet or max(texts, key=lambda word: _numbers_in(texts[word]))
+    frame = texts[name]
+    top = [[str(cell) for cell in row] for row in frame.head(SAMPLED).itertuples(index=False)]
+    comments = [bool(row) and is_comment(row[0]) for row in top]
+    layout = layout_of(top, comments, stated.header_row)
+    places = np.arange(len(frame))
+    blank = (frame == "").all(axis=1).to_numpy(dtype=np.bool_)
+    kept = (places >= layout.data) & ~blank
+    sheet = [f"sheet {name} of {', '.join(texts)} was read"] if len(sheets) > 1 else []
+    body = frame[kept].reset_index(drop=True)
+    notes = (*sheet, *layout.notes())
+    return Cells(
+        body, layout.names, layout.unit_cells, places[kept] + 1, ".", layout.header_row, notes
+    )
+
+
+def _numbers_in(sheet: pd.DataFrame) -> float:
+    """Numbers of a sheet, estimated by its first rows."""
+    rows = [list(row) for row in sheet.head(SAMPLED).itertuples(index=False)]
+    shares = [max(numeric_share(row), 0.0) * len(row) for row in rows]
+    return float(np.mean(shares)) * len(sheet) if shares else 0.0
+
+
+def _as_text(cell: object) -> str:
+    if isinstance(cell, (dt.datetime, dt.date)):
+        return cell.isoformat()
+    if cell is None or cell is pd.NaT or (isinstance(cell, float) and np.isnan(cell)):
+        return ""
+    return str(cell).strip()

@@ -11,8 +11,8 @@ import pytest
 from bench import grid, sun_of
 
 from calibrate.calibration import calibrate
-from calibrate.frames import SPOT, with_spots
 from calibrate.settings import Settings, SettingsError
+from calibrate.sources import SPOT, with_spots
 from calibrate.table import Table, TableError
 
 CASES = Path(os.environ.get("SUNATLAS_CASES", Path(__file__).parents[3] / "shared" / "cases"))

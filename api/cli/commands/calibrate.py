@@ -105,10 +105,10 @@ def calibrate(
     from benchmark.progress import terminal_progress  # noqa: PLC0415 - Rich, where it is shown
     from calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
     from calibrate.flight.names import c_name  # noqa: PLC0415 - as above
-    from calibrate.frames import table_in  # noqa: PLC0415 - as above
     from calibrate.products import write_products  # noqa: PLC0415 - as above
     from calibrate.report.page import Asked, outcomes  # noqa: PLC0415 - as above
     from calibrate.settings import read_settings  # noqa: PLC0415 - as above
+    from calibrate.sources import table_in  # noqa: PLC0415 - as above
     from calibrate.table import read_table  # noqa: PLC0415 - as above
     from calibrate.template import template_of  # noqa: PLC0415 - as above
     from files.atomic import replace_file  # noqa: PLC0415 - as above

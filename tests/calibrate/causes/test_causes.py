@@ -13,10 +13,9 @@ from calibrate.causes.bad_cells import without_bad_cells
 from calibrate.causes.kinks import largest_unnoticed
 from calibrate.causes.lag import fraction_late
 from calibrate.causes.light import level_of_products, level_of_sum, without_stray
-from calibrate.causes.removed import unexplained
 from calibrate.causes.untested import untested_in
 from calibrate.conventions.findings import findings
-from calibrate.exclusions import FOLD, WRONG, Excluded
+from calibrate.exclusions import FOLD, WRONG, Excluded, unexplained
 from calibrate.halves import Halves
 from calibrate.readings import FALLING, quadrant_balances, readings_of
 from calibrate.robust import answer_noise_deg, residuals, robust_map

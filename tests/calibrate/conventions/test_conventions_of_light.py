@@ -8,7 +8,7 @@ import pytest
 from samples import found_in, samples, table
 
 from algorithms.contract import FeatureKind
-from calibrate.face_normals import face_normals
+from calibrate.conventions.channels import face_normals
 from calibrate.table import TableError
 
 ANGLES = bench.grid(15, 40.0)

@@ -17,7 +17,7 @@ import numpy as np
 from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_chains
 from calibrate.calibration import Calibration
-from calibrate.causes.limits import limits_of
+from calibrate.causes.bad_cells import limits_of
 from calibrate.readings import Readings
 from calibrate.selection import Candidate, fitted, geometry_of
 from calibrate.settings import parse_settings

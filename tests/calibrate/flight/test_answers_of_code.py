@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from raw_sensors import OTHERS, SENSORS, compiled
 
-from calibrate.causes.limits import ReadingLimits
+from calibrate.causes.bad_cells import ReadingLimits
 from calibrate.flight.code import flight_code
 from calibrate.flight.names import c_name, comment
 from calibrate.flight.program import run

@@ -17,10 +17,8 @@ from raw_sensors import SENSORS, apart_deg, compiled
 
 from calibrate.calibration import Calibration
 from calibrate.documents import SavedCalibration, document, load, of_document, with_correction
-from calibrate.flight.code import flight_code
-from calibrate.flight.corrected import corrected_code
-from calibrate.flight.program import NoCodeError
-from calibrate.flight.stored import program_of, stored_program
+from calibrate.flight.code import corrected_code, flight_code
+from calibrate.flight.program import NoCodeError, program_of, stored_program
 from calibrate.intervals.grazing import Grazing
 from calibrate.readings import Readings, readings_of
 from calibrate.recalibration import Correction, Errors

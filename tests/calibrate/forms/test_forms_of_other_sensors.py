@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from samples import table
 
-from calibrate.forms.almanac import sun_by_date
+from calibrate.forms.attitudes import sun_by_date
 from calibrate.readings import quadrant_balances, readings_of
 from calibrate.roles import guess, understood
 

@@ -9,8 +9,8 @@ from samples import samples
 from algorithms.angles import separation_deg
 from algorithms.contract import SensorGeometry
 from algorithms.discovery import discover_models
-from calibrate.intervals.left_out import errors_left_out
 from calibrate.selection import compare, fitted
+from calibrate.uncertainty import errors_left_out
 
 SUN = bench.sun_of(bench.grid(13, 40.0))
 CAMERA = SensorGeometry(focal_length_mm=3.5, pixel_pitch_mm=0.01, centre_px=(512.0, 512.0))

@@ -13,7 +13,7 @@ from bench import CENTRE, HEADER, angles_of, spots, sun_of, turn, write
 from algorithms.contract import UnusableDataError
 from calibrate.calibration import calibrate
 from calibrate.documents import load
-from calibrate.one_axis.curve import AxisCurve, angles_in, plane_of
+from calibrate.one_axis import AxisCurve, angles_in, plane_of
 from calibrate.products import write_products
 from calibrate.table import read_table
 

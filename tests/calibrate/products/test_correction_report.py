@@ -17,7 +17,7 @@ from calibrate.flight.code import flight_code
 from calibrate.products import corrected_products
 from calibrate.readings import Readings
 from calibrate.recalibration import Correction, Errors, poses_of
-from calibrate.report.correction import correction_report, outcomes_of
+from calibrate.report.page import correction_report, outcomes_of
 from calibrate.report.requirement import requirement
 
 STILL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
