@@ -25,18 +25,9 @@ _AT_ONCE = 20_000
 def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     """Return which samples (N,) of a frontal sensor lie where readings do not tell the direction.
 
-    Parameters
-    ----------
-    features : ndarray, shape (N, F)
-        Finite.
-    sun : ndarray, shape (N, 3)
-        Unit vectors.
-
-    Returns
-    -------
-    ndarray of bool, shape (N,)
-        True where readings hardly change with the direction or change the other way, and where such
-        a sample, of a direction far away, has the same reading.
+    Features are (N, F), finite, directions (N, 3). True where readings hardly change with the
+    direction or change the other way, and where such a sample, of a direction far away, has the
+    same reading.
     """
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
 

@@ -30,19 +30,10 @@ _MOST_WRONG = 0.25
 
 @dataclass(frozen=True)
 class Excluded:
-    """A sample that was left out of the fit.
+    """A sample that was left out of the fit."""
 
-    Attributes
-    ----------
-    source : str
-        Its run.
-    row : int
-        In its file.
-    reason : str
-    """
-
-    source: str
-    row: int
+    source: str  # its run
+    row: int  # in its file
     reason: str
 
 
@@ -119,21 +110,11 @@ _FEWEST, _MOST_RUNS = 20, 40
 
 @dataclass(frozen=True)
 class RunOffset:
-    """A run whose directions are off by a constant.
+    """A run whose directions are off by a constant."""
 
-    Attributes
-    ----------
-    run : int
-        Its number.
-    offset_deg : float
-        Size of the rotation, degrees.
-    others_deg : float
-        Median of the other runs' own, degrees.
-    """
-
-    run: int
-    offset_deg: float
-    others_deg: float
+    run: int  # its number
+    offset_deg: float  # size of the rotation
+    others_deg: float  # median of the other runs' own
 
 
 def off_runs(readings: Readings) -> list[RunOffset]:
@@ -208,18 +189,8 @@ def unexplained(
 
     Wrong poses are known as such where they lie among others that are right, at most 15 % of all:
     where they gather, the sensor is what does not do as the others say. What another direction
-    reads too is known beyond the stated field of view alone. A row that is there twice loses
-    nothing of the field and does not count.
-
-    Parameters
-    ----------
-    readings : Readings
-        That were fitted, with what was dropped while reading.
-    excluded : sequence of Excluded
-    wrong : Readings
-        The wrong poses.
-    half_fov_deg, fold_deg : float or None
-        Half the field of view as stated, and the smallest off-axis angle that folds.
+    reads too is known beyond the stated field of view alone, which a fold's smallest off-axis angle
+    tells. A row that is there twice loses nothing of the field and does not count.
     """
     reasons = Counter(one.reason for one in excluded if one.reason != DUPLICATE)
     dropped = {name: n for name, n in readings.dropped.items() if name != BEHIND}

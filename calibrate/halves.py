@@ -26,17 +26,12 @@ _DIGITS = 6
 class Halves:
     """How far fits to two halves are apart.
 
-    Attributes
-    ----------
-    ratio : float
-        RMS difference over the stated uncertainties added, all splits together; NaN where not
-        known.
-    chance : float
-        That fits which differ by noise alone have such a ratio or a larger one.
+    The ratio is the RMS difference over the stated uncertainties added, all splits together; NaN
+    where not known.
     """
 
     ratio: float = float("nan")
-    chance: float = 1.0
+    chance: float = 1.0  # of such a ratio, or a larger one, by noise alone
 
 
 def halves(scored: Scored, sample: Readings, geometry: SensorGeometry, noise: Floats) -> Halves:
@@ -45,24 +40,11 @@ def halves(scored: Scored, sample: Readings, geometry: SensorGeometry, noise: Fl
     Samples are halved at random several times: runs, or poses with all their repeats, go to one
     side. A fixed pattern would not do: every other pose of a grid of odd width has all its corners.
     Fits are compared inside both halves' fields alone, since a fit that is continued to a corner
-    differs by more than noise.
+    differs by more than noise, of which each sample's 1-sigma (N,) in degrees is given.
 
-    Parameters
-    ----------
-    scored : Scored
-        The model.
-    sample : Readings
-        Readings to split.
-    geometry : SensorGeometry
-    noise : ndarray, shape (N,)
-        1-sigma of each sample, degrees.
-
-    Returns
-    -------
-    Halves
-        The square of the ratio is one of two variances. Both come from few free directions, since a
-        fit has few parameters and errs most at the edge: Satterthwaite's degrees of freedom of the
-        fits' covariance, told by refits, give the chance by the F distribution.
+    The square of the ratio is one of two variances. Both come from few free directions, since a fit
+    has few parameters and errs most at the edge: Satterthwaite's degrees of freedom of the fits'
+    covariance, told by refits, give the chance by the F distribution.
     """
     from scipy.special import fdtrc  # noqa: PLC0415 - SciPy, at the first use
 
@@ -131,10 +113,7 @@ def _half(sample: Readings, generator: np.random.Generator) -> NDArray[np.bool_]
 def _traces(one: Floats, other: Floats) -> tuple[float, float]:
     """Return tr(C)^2 and tr(C^2) of the sum C of two covariances, without bias.
 
-    Parameters
-    ----------
-    one, other : ndarray, shape (R, M, 3)
-        Refits of each half less their mean.
+    Of refits (R, M, 3) of each half less their mean.
     """
     one, other = (part.reshape(len(part), -1) for part in (one, other))
     free = len(one) - 1

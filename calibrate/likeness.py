@@ -16,23 +16,16 @@ _FEWEST = 4
 class Likeness:
     """A standard data set beside the reader's own data.
 
-    Attributes
-    ----------
-    dataset, detector, mask, extractor : str
-        The standard one, and the extractor whose features its models read.
-    factor : float
-        By which errors of models, over their middle one, typically differ from the reader's: 1 is
-        the same.
-    errors_deg : mapping of str to float
-        Own error there by model.
+    `factor` is that by which errors of models, over their middle one, typically differ from the
+    reader's: 1 is the same.
     """
 
     dataset: str
     detector: str
     mask: str
-    extractor: str
+    extractor: str  # whose features its models read
     factor: float
-    errors_deg: Mapping[str, float]
+    errors_deg: Mapping[str, float]  # own error there by model
 
 
 def alike(
@@ -40,17 +33,9 @@ def alike(
 ) -> list[Likeness]:
     """Return the standard data sets, the one where models rank most alike first.
 
-    None where fewer than four models answer on both.
-
-    Only ratios between models count: a sensor with ten times the noise behaves alike where noise is
-    not what tells models apart.
-
-    Parameters
-    ----------
-    errors_deg : mapping of str to float
-        RMS error of models on the reader's data.
-    nominal : mapping
-        Published scores by data set, extractor and model, with `own_error_deg`.
+    Of published scores by data set, extractor and model, with `own_deg`; none where fewer than four
+    models answer on both. Only ratios between models count: a sensor with ten times the noise
+    behaves alike where noise is not what tells models apart.
     """
     mine = {name: error for name, error in errors_deg.items() if error > 0}
     theirs: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}

@@ -204,29 +204,10 @@ def calibration_of_axis(
     notes: Sequence[str],
     excluded: Sequence[Excluded] = (),
 ) -> dict[str, Any]:
-    """Return what a calibration of the one angle that the poses of tables changed says.
+    """Return a calibration of the one angle that the poses of tables changed, by attribute.
 
-    Parameters
-    ----------
-    readings : Readings
-        Samples whose directions lie in one plane.
-    file : File
-        That they are of.
-    tables : sequence of Table
-    notes : sequence of str
-        On how the tables were read.
-    excluded : sequence of Excluded
-        Samples left out before.
-
-    Returns
-    -------
-    dict
-        Attributes of `calibrate.calibration.Calibration` by their names.
-
-    Raises
-    ------
-    UnusableDataError
-        As `calibrated_axis`.
+    `readings` lie in one plane, `notes` say how the tables were read, `excluded` are samples left
+    out before. Raises as `calibrated_axis`.
     """
     settings = file.settings
     found = calibrated_axis(readings, settings.bench.floor_deg)
@@ -245,24 +226,10 @@ def calibration_of_axis(
 
 
 def calibrated_axis(readings: Readings, floor_deg: float) -> dict[str, Any]:
-    """Calibrate the one angle that a sweep changed.
+    """Calibrate the one angle that a sweep changed; return attributes of `Calibration` by name.
 
-    Parameters
-    ----------
-    readings : Readings
-        Samples whose directions lie in one plane, with one or two features.
-    floor_deg : float
-        RMS error of the bench, degrees.
-
-    Returns
-    -------
-    dict
-        What `calibrate.calibration.Calibration` says of it, by its names.
-
-    Raises
-    ------
-    UnusableDataError
-        If readings are signals of several channels, too few, or do not follow the angle.
+    UnusableDataError if readings are signals of several channels, too few, or do not follow the
+    angle.
     """
     if readings.kind is FeatureKind.SIGNALS:
         raise UnusableDataError(

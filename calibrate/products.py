@@ -163,13 +163,7 @@ def write_products(
 
     Everything is made before the first is written, and takes its place in one step
     (`files.atomic`): who is killed leaves the files of the calibration before, or these.
-
-    Raises
-    ------
-    UnreplaceableError
-        If the directory cannot be replaced as a whole.
-    OSError
-        If it cannot be written.
+    UnreplaceableError if the directory cannot be replaced as a whole, OSError if not written.
     """
     return write_set(products(found, name, command, asked, tell=tell), directory, name)
 

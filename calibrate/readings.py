@@ -49,42 +49,18 @@ _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
 
 @dataclass(frozen=True)
 class Readings:
-    """Samples of a calibration.
+    """Samples of a calibration."""
 
-    Parameters
-    ----------
-    features : ndarray, shape (N, F)
-        Spots, balances or signals.
-    sun : ndarray, shape (N, 3)
-        Unit vectors to the light.
-    kind : FeatureKind
-        What the features are.
-    rows : ndarray of int, shape (N,)
-        Number of each sample's row in the file.
-    run : ndarray of int, shape (N,)
-        Number of each sample's run, from 0.
-    run_names : tuple of str
-        Of the runs.
-    context : mapping of str to ndarray
-        ``time_s`` and ``temperature_K`` where the file has them.
-    angles : ndarray, shape (N, 2), optional
-        The file's two angles, degrees, where it has angles.
-    raw : ndarray, shape (N, K)
-        Readings less dark over gain, before balances are made.
-    dropped : mapping of str to int
-        Rows left out of the file, by reason.
-    """
-
-    features: Floats
-    sun: Floats
+    features: Floats  # (N, F), spots, balances or signals
+    sun: Floats  # (N, 3), unit vectors to the light
     kind: FeatureKind
-    rows: NDArray[np.int64]
-    run: NDArray[np.int64]
+    rows: NDArray[np.int64]  # (N,), in the file
+    run: NDArray[np.int64]  # (N,), from 0
     run_names: tuple[str, ...]
-    raw: Floats
-    context: Mapping[str, Floats] = field(default_factory=dict)
-    angles: Floats | None = None
-    dropped: Mapping[str, int] = field(default_factory=dict)
+    raw: Floats  # (N, K), less dark over gain, before balances are made
+    context: Mapping[str, Floats] = field(default_factory=dict)  # of time_s and temperature_K
+    angles: Floats | None = None  # (N, 2), the file's, degrees
+    dropped: Mapping[str, int] = field(default_factory=dict)  # rows left out of the file, by reason
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -109,27 +85,11 @@ class Readings:
 
 
 def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Readings:
-    """Return the samples of a table.
+    """Return the samples of a table by settings of its columns.
 
-    Parameters
-    ----------
-    table : Table
-        As `calibrate.table.read_table` gives it.
-    settings : Settings
-        What its columns are.
-    behind : bool
-        Whether rows whose light is behind the sensor are kept.
-
-    Returns
-    -------
-    Readings
-        Rows without a finite reading and direction, of zeros alone, or whose light's direction is
-        no vector are left out and counted by reason.
-
-    Raises
-    ------
-    TableError
-        If a column is missing or holds no numbers, or no row is left.
+    Rows without a finite reading and direction, of zeros alone, or whose light's direction is no
+    vector are left out and counted by reason; so are those with the light behind the sensor, unless
+    `behind`. TableError if a column is missing or holds no numbers, or no row is left.
     """
     raw = np.column_stack([table.numbers(name) for name in settings.readings.columns])
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])

@@ -32,11 +32,7 @@ _MEDIAN = 1.1774
 class Errors:
     """Angles between answers and poses, degrees; NaN where there is no answer.
 
-    Attributes
-    ----------
-    rms_deg, median_deg, largest_deg : float
-    most_deg : float
-        RMS without the largest tenth, and at least one, which may be a wrong pose.
+    `most_deg` is the RMS without the largest tenth, and at least one, which may be a wrong pose.
     """
 
     rms_deg: float

@@ -28,22 +28,12 @@ _MAD = 1.4826
 
 @dataclass(frozen=True)
 class SmoothMap:
-    """A polynomial from features to Sun vectors.
+    """A polynomial from features to Sun vectors."""
 
-    Attributes
-    ----------
-    middle, width : ndarray, shape (F,)
-        What features are shifted and divided by.
-    degree : int
-        Of the polynomial.
-    coefficients : ndarray, shape (terms, 3)
-        Of its terms, for each component.
-    """
-
-    middle: Floats
-    width: Floats
+    middle: Floats  # (F,), what features are shifted by
+    width: Floats  # (F,), and divided by
     degree: int
-    coefficients: Floats
+    coefficients: Floats  # (terms, 3), for each component
 
     def predict(self, features: Floats) -> Floats:
         """Return unit vectors (N, 3) of features (N, F)."""
@@ -85,19 +75,8 @@ def robust_map(
 ) -> tuple[SmoothMap, Floats]:
     """Fit a polynomial from features to directions that a tenth of wrong poses does not move.
 
-    Parameters
-    ----------
-    features : ndarray, shape (N, F)
-        Finite.
-    sun : ndarray, shape (N, 3)
-        Unit vectors.
-    degree : int, optional
-        Of the polynomial; by default as many as the samples settle.
-
-    Returns
-    -------
-    SmoothMap, ndarray (N,)
-        And the size of each sample's residual, degrees.
+    Features (N, F) are finite, directions (N, 3) unit vectors; the degree is by default as high as
+    the samples settle. Returns the map and the size (N,) of each sample's residual, degrees.
     """
     used = normalised(features)
     degree = degree_for(len(used), used.shape[1]) if degree is None else degree
@@ -129,14 +108,9 @@ def robust_map(
 
 
 def least_absolute(design: Floats, wanted: Floats) -> float:
-    """Return the median size of what a fit by least absolute values leaves.
+    """Return the median size of what a fit by least absolute values leaves of values (N,).
 
-    A quarter of wrong rows hardly moves it.
-
-    Parameters
-    ----------
-    design : ndarray, shape (N, P)
-    wanted : ndarray, shape (N,)
+    A quarter of wrong rows of the design (N, P) hardly moves it.
     """
     weight: Floats = np.ones(len(wanted))
     for _ in range(_ROUNDS_ABSOLUTE):
@@ -177,21 +151,9 @@ def wrong_poses(features: Floats, sun: Floats, least_deg: float = 0.0) -> NDArra
     """Return which samples (N,) no smooth function of the readings explains, at most a quarter.
 
     A polynomial does not follow a sensor everywhere: what it leaves is compared with what it leaves
-    around, so that only samples that their neighbours contradict count.
-
-    Parameters
-    ----------
-    features : ndarray, shape (N, F)
-        Finite.
-    sun : ndarray, shape (N, 3)
-        Unit vectors.
-    least_deg : float
-        Departures below this are never wrong poses: the bench's floor.
-
-    Returns
-    -------
-    ndarray of bool, shape (N,)
-        True where a sample departs by over six robust standard deviations from its neighbours.
+    around, so that only samples that their neighbours contradict, by over six robust standard
+    deviations, count. Features (N, F) are finite; departures below the bench's floor, `least_deg`,
+    are never wrong poses.
     """
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
 

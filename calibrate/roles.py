@@ -37,17 +37,10 @@ _BALANCE = 1.2
 
 @dataclass(frozen=True)
 class Understood:
-    """What the columns of a table seem to be.
-
-    Attributes
-    ----------
-    settings : Settings
-    notes : tuple of str
-        What the names alone do not say, in sentences without an end.
-    """
+    """What the columns of a table seem to be."""
 
     settings: Settings
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what the names alone do not say, without an end
 
 
 @dataclass
@@ -97,16 +90,8 @@ def guess(table: Table) -> Settings:
 def understood(table: Table) -> Understood:
     """Return settings guessed from a table's columns, and how.
 
-    Parameters
-    ----------
-    table : Table
-        As `calibrate.table.read_table` gives it.
-
-    Raises
-    ------
-    TableError
-        If no columns of the light's direction or of readings are recognised: the message says what
-        to write into a config.
+    TableError if no columns of the light's direction or of readings are recognised: the message
+    says what to write into a config.
     """
     columns = _Columns.of(table)
     rows = _rows_of(columns)

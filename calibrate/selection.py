@@ -54,44 +54,20 @@ _FLEXIBILITY = (
 
 @dataclass(frozen=True)
 class Candidate:
-    """A model and how it did on what it had not seen.
+    """A model and how it did on what it had not seen."""
 
-    Attributes
-    ----------
-    name : str
-        Of the model, or of compensations and model.
-    rms_deg, spread_deg, worst_deg : float
-        RMS error of samples left out, standard error of it over the folds, and the worst fold's.
-    missing : float
-        Share of samples left out that were not answered.
-    parameters : int
-        Parameters that the fit names; 0 of tables.
-    seconds : float
-        Of one fit.
-    refused : str
-        Why it cannot be fitted; empty where it can.
-    errors : ndarray, shape (N,), optional
-        Of each sample when it was left out, degrees; NaN where not answered.
-    offsets : ndarray, shape (N, 3), optional
-        Predicted minus true direction then.
-    deviation : ndarray, shape (N,), optional
-        1-sigma of a tangent axis that the model stated then, degrees.
-    moved_deg : float
-        RMS of what its answers move by with a tenth less light.
-    """
-
-    name: str
-    rms_deg: float = float("nan")
-    spread_deg: float = float("nan")
-    worst_deg: float = float("nan")
-    missing: float = float("nan")
-    parameters: int = 0
-    seconds: float = float("nan")
-    refused: str = ""
+    name: str  # of the model, or of compensations and model
+    rms_deg: float = float("nan")  # of samples left out
+    spread_deg: float = float("nan")  # standard error of it over the folds
+    worst_deg: float = float("nan")  # of the worst fold
+    missing: float = float("nan")  # share of samples left out that were not answered
+    parameters: int = 0  # that the fit names; 0 of tables
+    seconds: float = float("nan")  # of one fit
+    refused: str = ""  # why it cannot be fitted; empty where it can
     errors: Floats | None = field(default=None, repr=False)
     offsets: Floats | None = field(default=None, repr=False)
     deviation: Floats | None = field(default=None, repr=False)
-    moved_deg: float = 0.0
+    moved_deg: float = 0.0  # RMS of what its answers move by with a tenth less light
 
 
 def geometry_of(readings: Readings, settings: Settings) -> SensorGeometry:
@@ -188,10 +164,7 @@ def compare(
 def choose(candidates: Sequence[Candidate]) -> tuple[Candidate, str]:
     """Return the simplest candidate within one standard error of the best, and why.
 
-    Raises
-    ------
-    UnusableDataError
-        If no model could be fitted: what they said.
+    UnusableDataError if no model could be fitted: what they said.
     """
     usable = [one for one in candidates if not one.refused]
     if not usable:
@@ -244,15 +217,7 @@ def fitted(scored: Scored, readings: Readings, geometry: SensorGeometry) -> Mode
 
 @dataclass(frozen=True)
 class Settled:
-    """A model whose settings are those that another fit chose: orders are not chosen again.
-
-    Attributes
-    ----------
-    scored : Model or Chain
-        The model.
-    settings : mapping of str to Any
-        By name.
-    """
+    """A model whose settings are those that another fit chose: orders are not chosen again."""
 
     scored: Scored
     settings: Mapping[str, Any]

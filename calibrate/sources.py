@@ -25,27 +25,13 @@ _LARGEST = 512 * 1024 * 1024
 
 @dataclass(frozen=True)
 class Sources:
-    """What files of one sensor hold.
+    """What files of one sensor hold."""
 
-    Attributes
-    ----------
-    tables : tuple of Table
-        One a file; pictures are spots already.
-    settings : Settings
-        Of the tables.
-    notes : tuple of str
-        On how the files and pictures were read.
-    digest : str
-        SHA-256 of all files, 32 digits.
-    digests : tuple of str
-        SHA-256 of each file.
-    """
-
-    tables: tuple[Table, ...]
+    tables: tuple[Table, ...]  # one a file; pictures are spots already
     settings: Settings
-    notes: tuple[str, ...]
-    digest: str
-    digests: tuple[str, ...]
+    notes: tuple[str, ...]  # on how the files and pictures were read
+    digest: str  # SHA-256 of all files, 32 digits
+    digests: tuple[str, ...]  # SHA-256 of each file
 
 
 def read_sources(
@@ -55,10 +41,7 @@ def read_sources(
 ) -> Sources:
     """Read files, or directories of pictures with one table each; settings are guessed if none.
 
-    Raises
-    ------
-    TableError
-        If a file is none, or lacks a column.
+    TableError if a file is none, or lacks a column.
     """
     paths = [table_in(path) if path.is_dir() else path for path in paths]
     tables = [read_table(path, settings.file if settings else None) for path in paths]
@@ -116,23 +99,10 @@ def with_spots(
 ) -> tuple[Table, list[str]]:
     """Return the table with the spot of each row's picture, and what was done to the pictures.
 
-    Parameters
-    ----------
-    table : Table
-        With a column of names of PNG, TIFF, BMP or JPEG files.
-    directory : Path
-        That the names start from; none may lead out of it.
-    settings : Settings
-        Of kind ``frames``.
-    tick : callable
-        Told how many pictures are read and how many there are.
-
-    Raises
-    ------
-    TableError
-        If a picture is missing or is none, by row.
-    SettingsError
-        If the extractor does not read one spot in a frame, or needs more of the drawing.
+    The table has a column of names of PNG, TIFF, BMP or JPEG files; they start from the directory,
+    and none may lead out of it. `tick` is told how many are read and how many there are. TableError
+    if a picture is missing or is none, by row; SettingsError if the extractor does not read one
+    spot in a frame, or needs more of the drawing.
     """
     column = settings.readings.columns[0]
     if column not in table.columns:

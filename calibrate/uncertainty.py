@@ -210,10 +210,7 @@ def refits(  # noqa: PLR0917 - what a fit is made of
 ) -> Floats:
     """Return directions (count, N, 3) at samples `at`, each by a fit to other noise of size (N,).
 
-    Raises
-    ------
-    UnusableDataError
-        If no refit settles the model.
+    UnusableDataError if no refit settles the model.
     """
     found = []
     refusal: UnusableDataError | None = None
@@ -259,27 +256,9 @@ def errors_left_out(  # noqa: PLR0917 - what was fitted, and to what
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Return errors (M, 3) of samples that a fit did not see, and their true directions (M, 3).
 
-    Samples that the model's own residual removed count as others do: no neighbour contradicts them,
-    so that new ones may err as much.
-
-    Parameters
-    ----------
-    scored : Scored
-        The model that was chosen.
-    chosen : Candidate
-        What it did on the samples compared on.
-    used : Readings
-        These samples.
-    geometry : SensorGeometry
-    model : Model
-        The final fit.
-    removed : Readings
-        Samples removed because the model does not explain them, all of them.
-
-    Returns
-    -------
-    ndarray, ndarray
-        Predicted minus true direction, NaN where not answered, and the true direction.
+    Errors are predicted minus true, NaN where not answered: of the samples compared on, `used`, and
+    of all that were removed because the final fit, `model`, does not explain them. They count as
+    others do: no neighbour contradicts them, so that new ones may err as much.
     """
     offsets = _with_rim(scored, chosen, used, geometry)
     if not len(removed):

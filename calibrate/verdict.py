@@ -36,51 +36,24 @@ _GAP = 5.0
 
 @dataclass(frozen=True)
 class Pattern:
-    """A pattern left in the residuals.
+    """A pattern left in the residuals."""
 
-    Attributes
-    ----------
-    name : str
-        What the residuals go with.
-    share : float
-        Of their variance that it explains; of the variance of their sizes' ranks for `GROWING`.
-    chance : float
-        That residuals without it would go with it as much.
-    """
-
-    name: str
-    share: float
-    chance: float
+    name: str  # what the residuals go with
+    share: float  # of their variance; of the variance of sizes' ranks for `GROWING`
+    chance: float  # that residuals without it would go with it as much
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a calibration is worth.
-
-    Attributes
-    ----------
-    word : {"good", "model misfit", "poses missing", "conventions uncertain"}
-    reason : str
-        In one or two sentences.
-    split_ratio : float
-        Difference of fits to two halves over their stated uncertainties added; NaN where not known.
-    patterns : tuple of Pattern
-        Left in the errors of samples left out, the largest first.
-    next_poses : ndarray, shape (20, 3)
-        Directions that would add most.
-    untested : tuple of str
-        Causes of a wrong calibration that the file cannot show, each with what would.
-    parts : tuple of Part
-        Of the samples left out, with how many errors lie within the intervals, the fewest first.
-    """
+    """What a calibration is worth."""
 
     word: Word
-    reason: str
-    split_ratio: float
-    patterns: tuple[Pattern, ...]
-    next_poses: Floats
-    untested: tuple[str, ...] = ()
-    parts: tuple[Part, ...] = ()
+    reason: str  # in one or two sentences
+    split_ratio: float  # of fits to two halves, over their uncertainties added
+    patterns: tuple[Pattern, ...]  # left in errors of samples left out, the largest first
+    next_poses: Floats  # (20, 3), directions that would add most
+    untested: tuple[str, ...] = ()  # causes that the file cannot show, each with what would
+    parts: tuple[Part, ...] = ()  # of the samples left out, the least covered first
 
 
 def judge(  # noqa: PLR0917 - the numbers it is made of
@@ -95,22 +68,9 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
 ) -> Verdict:
     """Return the verdict.
 
-    Parameters
-    ----------
-    rms_deg, residual_deg : float
-        Error of samples left out, and of those fitted, degrees.
-    noise : float
-        Of single samples, degrees.
-    floor_deg : float
-        Of the bench, degrees.
-    split : Halves
-        How far fits to halves are apart.
-    patterns : tuple of Pattern
-        In the errors.
-    next_poses : ndarray
-        To take where poses are missing.
-    gap : float
-        Largest distance of a direction of the field to a pose, in usual steps.
+    Errors are RMS, degrees: of samples left out, of those fitted, of single samples' noise, and of
+    the bench's directions. `gap` is the largest distance of a direction of the field to a pose, in
+    usual steps, `next_poses` what to take where poses are missing.
     """
     floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
     apart = split.ratio > _RATIO and split.chance < _RATIO_CHANCE
@@ -159,12 +119,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
 def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
     """Return a verdict that is good only if the file's conventions are as stated after all.
 
-    Parameters
-    ----------
-    verdict : Verdict
-        On the fit.
-    found : str
-        The convention that the file seems to follow instead, in a sentence.
+    `found` is the convention that the file seems to follow instead, in a sentence.
     """
     reason = f"{found}: apply that or state it; as stated, {verdict.reason}"
     return replace(verdict, word="conventions uncertain", reason=reason)
@@ -173,14 +128,8 @@ def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
 def withheld(verdict: Verdict, doubt: str, parts: tuple[Part, ...]) -> Verdict:
     """Return a verdict that is not good where rows are missing for no cause, or intervals fail.
 
-    Parameters
-    ----------
-    verdict : Verdict
-        On the fit.
-    doubt : str
-        What speaks against it, as rows left out without a known cause, in a sentence; or empty.
-    parts : tuple of Part
-        Of the samples left out.
+    `doubt` is what speaks against it, as rows left out without a known cause, in a sentence; or
+    empty.
     """
     bad = uncovered(parts)
     said = doubt or (

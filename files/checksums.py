@@ -41,14 +41,10 @@ def write_checksums(directory: Path) -> None:
 
 
 def read_checksums(directory: Path, name: str = CHECKSUMS) -> dict[str, str]:
-    """Read the checksum of each file, as listed.
+    """Read the checksum of each file, as listed; FileNotFoundError where there is no list.
 
-    Raises
-    ------
-    FileNotFoundError
-        Where there is no list.
-    FileRefusedError
-        On a line that is no checksum with a path inside the directory, or names a file twice.
+    FileRefusedError on a line that is no checksum with a path inside the directory, or names a file
+    twice.
     """
     path = directory / name
     listed: dict[str, str] = {}
@@ -75,11 +71,8 @@ def differences(
 ) -> list[tuple[str, str]]:
     """Find what does not hold: (file, what is wrong with it), sorted; empty where all holds.
 
-    Parameters
-    ----------
-    directory : with a list; raises as `read_checksums`
-    names : files that should be listed, by default all there are
-    coming : another list, by which a file may be as well
+    `names` should be listed, by default all files there are; by `coming`, another list, a file may
+    be as well. Raises as `read_checksums`.
     """
     listed = read_checksums(directory)
     present = set(contents(directory) if names is None else names) - {CHECKSUMS}

@@ -27,10 +27,7 @@ def differences(
 ) -> list[tuple[str, str]]:
     """Name what of a folder is not as commands wrote it, and why; an empty list where all is.
 
-    Parameters
-    ----------
-    folder, names : files that should be there, relative and POSIX
-    required : whether there must be a list; else nothing is known without one, and nothing said
+    `names` should be there, relative and POSIX. Without a list nothing is said, unless `required`.
     """
     try:
         return checksums.differences(folder, names, _coming(folder))
@@ -49,25 +46,10 @@ def write_recorded(
 ) -> bool:
     """Write files of a folder, each whole or not at all, and take them into its list.
 
-    Parameters
-    ----------
-    folder : made where there is none
-    contents : by name relative to the folder; None takes the file away
-    start : begin a list where there is none; without it files beside which there is none are just
-        written
-    together : sub-folder that all of them stand in, which changes in one step
-
-    Returns
-    -------
-    bool
-        Whether a file changed, the list aside.
-
-    Raises
-    ------
-    FileRefusedError
-        The list there is cannot be read; nothing has been written.
-    OSError
-        A file cannot be written.
+    Contents stand by name relative to the folder; None takes a file away. Where there is no list
+    one is begun if `start`, else files are just written. Files of a sub-folder that change
+    `together` do so in one step. Returns whether a file changed, the list aside. FileRefusedError
+    where the list cannot be read, and nothing has been written; OSError where a file cannot be.
     """
     listed = _settled(folder)
     changed: dict[str, bytes | None] = {}

@@ -30,14 +30,10 @@ class FileRefusedError(ValueError):
 
 
 def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
-    """Return what a regular file holds.
+    """Return what a regular file holds; FileNotFoundError where nothing has this name.
 
-    Raises
-    ------
-    FileNotFoundError
-        Nothing has this name.
-    FileRefusedError
-        It is no regular file, which may never end, cannot be read, or is larger than `largest`.
+    FileRefusedError for what is no regular file, which may never end, cannot be read, or is larger
+    than `largest`.
     """
     try:
         if os.path.lexists(path) and not path.is_file():
@@ -78,11 +74,8 @@ def read_json(path: Path, largest: int = LARGEST) -> Any:
 def parse_json(text: str, path: Path) -> Any:
     """Return the value of a JSON text; `path` is named where it is refused.
 
-    Raises
-    ------
-    FileRefusedError
-        For broken or too deeply nested JSON, a key that stands twice in an object, and a number
-        that is not finite (NaN, Infinity, 1e999).
+    FileRefusedError for broken or too deeply nested JSON, a key that stands twice in an object, and
+    a number that is not finite (NaN, Infinity, 1e999).
     """
     try:
         return json.loads(

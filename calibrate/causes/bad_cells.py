@@ -39,30 +39,17 @@ class Level:
 
 @dataclass
 class BadCells:
-    """What was found in a file's cells.
+    """What was found in a file's cells."""
 
-    Attributes
-    ----------
-    excluded : list of Excluded
-        Rows left out, with the cause.
-    levels : dict of str to Level
-        By column of readings.
-    notes : list of str
-        One sentence for each value that stands for no reading.
-    """
-
-    excluded: list[Excluded] = field(default_factory=list)
-    levels: dict[str, Level] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    excluded: list[Excluded] = field(default_factory=list)  # rows left out, with the cause
+    levels: dict[str, Level] = field(default_factory=dict)  # by column of readings
+    notes: list[str] = field(default_factory=list)  # a sentence for each such value
 
 
 def without_bad_cells(table: Table, settings: Settings) -> tuple[Table, BadCells]:
     """Return a table whose cells that hold no reading or direction are NaN, and what was found.
 
-    Raises
-    ------
-    TableError
-        If a column is missing or holds no numbers.
+    TableError if a column is missing or holds no numbers.
     """
     found = BadCells()
     columns = {name: np.array(column) for name, column in table.columns.items()}
@@ -237,15 +224,10 @@ _MORE_LIGHT = 2.0
 class ReadingLimits:
     """Readings between these limits, the limits themselves excluded, may be used.
 
-    Attributes
-    ----------
-    low, high : tuple of float
-        By column of readings, in the file's own units: levels at which readings were found to be
-        sentinels, saturated or clipped; minus and plus infinity where none was found.
-    least_light, most_light : float
-        Of the sum of the readings less dark over gain: a tenth of the usual light, below which rows
-        are left out, and twice the most light that was measured. 0 and infinity where readings do
-        not measure light.
+    `low` and `high` stand by column of readings, in the file's own units: levels at which readings
+    were found to be sentinels, saturated or clipped; infinite where none was found. The light is
+    the sum of the readings less dark over gain: from a tenth of the usual, below which rows are
+    left out, to twice the most that was measured; 0 and infinity where readings measure none.
     """
 
     low: tuple[float, ...]
@@ -255,16 +237,7 @@ class ReadingLimits:
 
 
 def limits_of(readings: Readings, settings: Settings, levels: Mapping[str, Level]) -> ReadingLimits:
-    """Return the limits of readings that were fitted.
-
-    Parameters
-    ----------
-    readings : Readings
-        That were fitted.
-    settings : Settings
-    levels : mapping of str to Level
-        Placeholder values by column, such as -999, found by `calibrate.causes.bad_cells`.
-    """
+    """Return the limits of readings that were fitted, by the levels of columns such as -999."""
     known = [levels.get(name, Level()) for name in settings.readings.columns]
     least, most = 0.0, np.inf
     if settings.readings.kind in ("quadrants", "electrodes", "channels"):

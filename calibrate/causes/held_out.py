@@ -22,35 +22,19 @@ _SECTORS = 6
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the samples left out.
-
-    Attributes
-    ----------
-    name : str
-    samples : int
-    coverage : float
-        Share of their errors, along two axes each, within the 95 % interval.
-    chance : float
-        That so few are within it where it holds 95 %.
-    """
+    """A part of the samples left out."""
 
     name: str
     samples: int
-    coverage: float
-    chance: float
+    coverage: float  # share of errors, along two axes each, within the 95 % interval
+    chance: float  # that so few are within it where it holds 95 %
 
 
 def parts_of(readings: Readings, along: Floats, sigma_deg: Floats) -> tuple[Part, ...]:
     """Return parts of the field, of time, of the light and of runs, the worst covered first.
 
-    Parameters
-    ----------
-    readings : Readings
-        Samples left out.
-    along : ndarray, shape (N, 2)
-        Their errors along two axes, degrees; NaN where not answered.
-    sigma_deg : ndarray, shape (N, 2)
-        Stated 1-sigma of each.
+    Of samples left out, by their errors (N, 2) along two axes, degrees, NaN where not answered, and
+    the stated 1-sigma (N, 2) of each.
     """
     from scipy.stats import binom  # noqa: PLC0415 - SciPy, at the first use
 

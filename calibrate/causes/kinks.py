@@ -30,23 +30,14 @@ _OFF, _ROUNDS = 6.0, 10
 class _Bend:
     """The change of slope of an axis at zero.
 
-    Attributes
-    ----------
-    change : float
-        Of the slope.
-    error : float
-        1-sigma of it, by a jackknife of blocks.
-    of_share : float
-        Change of slope that would explain the least share reported of the variance that a smooth
-        function leaves.
-    spread_deg : float
-        Standard deviation of the angles above zero, those below taken for zero.
+    `of_share` is the change that would explain the least share reported of the variance that a
+    smooth function leaves.
     """
 
     change: float
-    error: float
+    error: float  # 1-sigma of it, by a jackknife of blocks
     of_share: float
-    spread_deg: float
+    spread_deg: float  # of the angles above zero, those below taken for zero
 
     @property
     def moved_deg(self) -> float:

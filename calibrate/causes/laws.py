@@ -46,29 +46,16 @@ UNTESTED = (
 class Scale:
     """The scale of a table's angles, by the law of the sensor.
 
-    Attributes
-    ----------
-    followed : float
-        What the law leaves with the angles as stated, over the noise.
-    bent : float
-        The same where the sensor may depart from the law by a term of its own: cells by the square
-        of the cosine, cameras by radial distortion.
-    best : float
-        The same with the best factor.
-    factor : float
-        Of the angles as they should be over those stated.
-    error : float
-        1-sigma of the factor of all angles, if the law is the sensor's.
-    axis : str
-        Whose angles.
+    What the law leaves is over the noise. `bent` is that where the sensor may depart from the law
+    by a term of its own: cells by the square of the cosine, cameras by radial distortion.
     """
 
-    followed: float
+    followed: float  # what the law leaves with the angles as stated
     bent: float
-    best: float
-    factor: float
-    error: float
-    axis: str
+    best: float  # the same with the best factor
+    factor: float  # of the angles as they should be over those stated
+    error: float  # 1-sigma of the factor of all angles, if the law is the sensor's
+    axis: str  # whose angles
 
 
 def scale_of_angles(readings: Readings, settings: Settings) -> Scale:

@@ -47,24 +47,12 @@ _GLASS = 1.5
 
 @dataclass(frozen=True)
 class Dark:
-    """A level without light.
+    """A level without light, in units of readings less the stated dark over gain."""
 
-    Attributes
-    ----------
-    level : ndarray, shape (K,)
-        Of each column, in units of readings less the stated dark over gain.
-    error : float
-        1-sigma of it, by what blocks of poses differ; infinite where it is not known.
-    by : str
-        What told it.
-    told_apart : bool
-        Whether stray light, which is proportional to the Sun's, is separated from it.
-    """
-
-    level: Floats
-    error: float
-    by: str
-    told_apart: bool = False
+    level: Floats  # of each column, (K,)
+    error: float  # 1-sigma, by what blocks of poses differ; infinite where not known
+    by: str  # what told it
+    told_apart: bool = False  # whether stray light, which goes with the Sun's, is separated
 
 
 def reading_noise(values: Floats, sun: Floats) -> Floats:
@@ -171,11 +159,7 @@ def _of_products(q: Floats) -> tuple[Floats, Floats]:
 def level_of_channels(readings: Readings, falls: bool) -> Dark:
     """Return the level of each channel (K,), by poses without light on it, or by the cosine law.
 
-    Parameters
-    ----------
-    readings : Readings
-    falls : bool
-        Whether they fall when light rises.
+    `falls` says whether readings fall when light rises.
     """
     away = 1.0 if falls else -1.0
     levels, errors = [], []
@@ -222,12 +206,7 @@ def plane_of(signal: Floats, sun: Floats) -> tuple[Floats, Floats, bool]:
 def changes_answers(dark: Dark, readings: Readings, noise_deg: float) -> bool:
     """Say whether such a level moves answers, at a tenth less light, by more than their noise.
 
-    Parameters
-    ----------
-    dark : Dark
-    readings : Readings
-    noise_deg : float
-        Of single answers, degrees.
+    The noise is that of single answers, degrees.
     """
     return _moved(dark.level, readings.raw - dark.level, readings.sun) > _TOO_MUCH * noise_deg
 
@@ -235,17 +214,8 @@ def changes_answers(dark: Dark, readings: Readings, noise_deg: float) -> bool:
 def largest_stray(readings: Readings, noise_deg: float) -> float:
     """Return how much of every column, if all see it alike, moves answers by half their noise.
 
-    Parameters
-    ----------
-    readings : Readings
-        Without their level in the dark.
-    noise_deg : float
-        Of single answers, degrees.
-
-    Returns
-    -------
-    float
-        In units of the readings: of the light as it is, when a tenth of it goes.
+    Of readings without their level in the dark, in their units: of the light as it is, when a tenth
+    of it goes. The noise is that of single answers, degrees.
     """
     each = _moved(np.ones(readings.raw.shape[1]), readings.raw, readings.sun)
     return 0.5 * noise_deg / each

@@ -45,13 +45,8 @@ def untested_in(
 ) -> tuple[str, ...]:
     """Return which causes of a wrong calibration a file cannot show, each with what would.
 
-    Parameters
-    ----------
-    readings : Readings
-    settings : Settings
-        As applied.
-    dark_found : bool
-        Whether their level without light was found in the file, not stated.
+    Settings are those applied; `dark_found` says whether their level without light was found in the
+    file, not stated.
     """
     from calibrate.causes.lag import fraction_late  # noqa: PLC0415 - one use
 

@@ -35,13 +35,8 @@ _PLAIN, _OF_PRODUCT = 0.05, 0.2
 def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterator[Finding]:
     """Yield readings that fall when light rises, and a level without light that is not stated.
 
-    Parameters
-    ----------
-    readings : Readings
-        Of quadrants, electrodes or channels; of others nothing is said.
-    settings : Settings
-    noise_deg : float
-        Of single answers, degrees: levels that move answers less, at other light, are not certain.
+    Of quadrants, electrodes and channels. Levels that move answers, at other light, by less than
+    the noise of single answers are not certain.
     """
     if readings.kind is FeatureKind.SIGNALS:
         falls = _falling_faces(readings)

@@ -13,32 +13,15 @@ MUCH_BETTER = 0.5
 
 @dataclass(frozen=True)
 class Finding:
-    """A convention that the file seems to follow in place of the one stated.
+    """A convention that the file seems to follow in place of the one stated."""
 
-    Attributes
-    ----------
-    about : str
-        ``axes``, ``boresight``, ``angles``, ``unit``, ``rows``, ``runs``, ``quadrants``, ``faces``,
-        ``channels``, ``light``, ``scale``, ``kink``.
-    found : str
-        What was found, in a sentence.
-    before_deg, after_deg : float
-        RMS of what a low-order map leaves with the file as stated, and with the change.
-    change : dict
-        Settings that would apply it; empty where none can.
-    certain : bool
-        Whether the evidence is practically certain.
-    note : str
-        What else would look the same.
-    """
-
-    about: str
-    found: str
-    before_deg: float
-    after_deg: float
-    change: dict[str, object]
-    certain: bool
-    note: str = ""
+    about: str  # axes, boresight, angles, unit, rows, runs, quadrants, faces, ...
+    found: str  # what was found, in a sentence
+    before_deg: float  # RMS of what a low-order map leaves as stated
+    after_deg: float  # and with the change
+    change: dict[str, object]  # settings that would apply it; empty where none can
+    certain: bool  # whether the evidence is practically certain
+    note: str = ""  # what else would look the same
 
 
 def change_of(settings: Settings, finding: Finding) -> Settings:

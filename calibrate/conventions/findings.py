@@ -51,19 +51,8 @@ def findings(
 ) -> list[Finding]:
     """Return what the file's conventions seem to be where they are not those stated.
 
-    Parameters
-    ----------
-    readings : Readings
-        As the settings have them.
-    settings : Settings
-        As stated.
-    every : Readings, optional
-        Those too whose light is behind the sensor as the angles are stated.
-
-    Returns
-    -------
-    list of Finding
-        The most certain first; empty where nothing speaks against the settings.
+    The most certain first; empty where nothing speaks against the settings. `every` has those
+    samples too whose light is behind the sensor as the angles are stated.
     """
     sample = readings.thinned(_MOST_FOR_NOISE)
     noise = answer_noise_deg(sample.features, sample.sun)

@@ -15,15 +15,7 @@ from calibrate.uncertainty import Intervals
 
 @dataclass(frozen=True)
 class AngleForm:
-    """Two angles of a direction.
-
-    Attributes
-    ----------
-    words : str
-        What they are.
-    c, python : tuple of two str
-        Both in radians, of x, y and z.
-    """
+    """Two angles of a direction, in words and as expressions of x, y and z, radians."""
 
     words: str
     c: tuple[str, str]
@@ -74,21 +66,10 @@ _FORMS = {
 class Answers:
     """Form of the angles, and the 1-sigma by place.
 
-    Attributes
-    ----------
-    form : AngleForm
-    axis : ndarray, shape (3,)
-        Unit vector that rings lie about.
-    rings_deg : ndarray, shape (K,)
-        Off-axis angles of the ring centres, K at least 2.
-    sectors : int
-        Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
-    sigma_deg : ndarray, shape (K, M, 2)
-        Of the two axes of `calibrate.intervals.places.tangent_axes`.
-    grazing : Grazing
-        By how much it grows where light grazes a face.
-    rotation : ndarray, shape (3, 3)
-        That takes directions and their 1-sigma to those answered.
+    `rings_deg` (K,) are off-axis angles of ring centres about `axis` (3,); sector m of M is at the
+    azimuth 360 m / M about it, from +x towards +y. `sigma_deg` (K, M, 2) is of the two axes of
+    `calibrate.intervals.places.tangent_axes` and grows by `grazing` where light grazes a face.
+    `rotation` (3, 3) takes directions and their 1-sigma to those answered.
     """
 
     form: AngleForm

@@ -42,26 +42,10 @@ def c_files(  # noqa: PLR0917 - what the files are made of
     said: Mapping[str, str],
     digest: str,
 ) -> dict[str, str]:
-    """Return the text of each C file by its name.
+    """Return the text of each C file by its name: header, source, self-test and example.
 
-    Parameters
-    ----------
-    program : Program
-    answers : Answers
-        Form of the angles, and the 1-sigma by place.
-    vectors : Vectors
-        Of the self-test.
-    name : str
-        An identifier, the prefix of all names.
-    said : mapping of str to str
-        What the header's comment says; a key starting with a space goes on without one.
-    digest : str
-        SHA-256 of the calibration, hexadecimal digits.
-
-    Returns
-    -------
-    dict of str to str
-        ``NAME.h``, ``NAME.c``, ``NAME_selftest.c``, ``NAME_example.c``.
+    `name` is an identifier, the prefix of all names; `said` what the header's comment says;
+    `digest` the SHA-256 of the calibration in hexadecimal digits.
     """
     readings = len(program.columns)
     inputs = list(program.columns)

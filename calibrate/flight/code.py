@@ -46,32 +46,18 @@ _KINDS = ("spot", "balance", "quadrants", "electrodes", "channels")
 class FlightCode:
     """Flight code of a calibration.
 
-    Attributes
-    ----------
-    program : Program
-    answers : Answers
-    vectors : Vectors
-        Of the self-test.
-    limits : RawLimits
-    added_deg, largest_deg : float
-        RMS and largest difference from the model on the calibration's own raw rows.
-    flagged : mapping of str to int
-        Rows that the model answers and the code does not, by status.
-    rows : int
-        Rows that were compared.
-    judged_on : str
-        What these rows are of.
+    The difference from the model, RMS and largest, is that on the calibration's own raw rows.
     """
 
     program: Program
     answers: Answers
-    vectors: Vectors
+    vectors: Vectors  # of the self-test
     limits: RawLimits
     added_deg: float
     largest_deg: float
-    flagged: Mapping[str, int]
-    rows: int
-    judged_on: str = "rows of the calibration"
+    flagged: Mapping[str, int]  # rows that only the model answers, by status
+    rows: int  # that were compared
+    judged_on: str = "rows of the calibration"  # what these rows are of
 
     @property
     def words(self) -> str:
@@ -91,14 +77,8 @@ class FlightCode:
     def files(self, name: str, said: Mapping[str, str], digest: str) -> dict[str, str]:
         """Return the text of each file of C and of Python by its name.
 
-        Parameters
-        ----------
-        name : str
-            An identifier, as `calibrate.flight.names.c_name` makes it.
-        said : mapping of str to str
-            What comments at the top say first.
-        digest : str
-            SHA-256 of the calibration, hexadecimal digits.
+        `name` is an identifier, as `calibrate.flight.names.c_name` makes it, `said` what comments
+        at the top say first, `digest` the SHA-256 of the calibration in hexadecimal digits.
         """
         told = {**said, **self._told()}
         return {
@@ -141,15 +121,8 @@ class FlightCode:
 def flight_code(found: Calibration) -> FlightCode:
     """Return the flight code of a calibration.
 
-    Parameters
-    ----------
-    found : Calibration
-
-    Raises
-    ------
-    NoCodeError
-        If no code is written for its model, or the code departs from the model by more than a
-        tenth of the model's error.
+    NoCodeError if no code is written for its model, or the code departs from the model by more than
+    a tenth of the model's error.
     """
     settings, readings = found.settings, found.readings
     kind = settings.readings.kind
@@ -194,24 +167,9 @@ def judged_code(  # noqa: PLR0917 - what code is made of
 ) -> FlightCode:
     """Return code by a program whose answers are those of a model on raw rows.
 
-    Parameters
-    ----------
-    program : Program
-    answers : Answers
-    limits : RawLimits
-        Of the program's first step.
-    raw : ndarray, shape (N, K)
-        In the file's order.
-    kelvin : ndarray, shape (N,)
-    model : ndarray, shape (N, 3)
-        Before the turn of the answers; NaN where there is none.
-    rms_deg : float
-        Of the model.
-
-    Raises
-    ------
-    NoCodeError
-        If the program answers none of the rows or adds more than a tenth of the model's error.
+    Rows (N, K) stand in the file's order; `model` (N, 3) is before the turn of the answers and NaN
+    where there is none. NoCodeError if the program answers none of the rows or adds more than a
+    tenth of the model's error.
     """
     _, sun, status = run(program.steps, raw, kelvin)
     off = separation_deg(sun, model)
@@ -251,18 +209,8 @@ def _clipped(limits: RawLimits, place: int) -> str:
 def corrected_code(saved: SavedCalibration, poses: Readings) -> FlightCode:
     """Return the flight code of a corrected calibration.
 
-    Parameters
-    ----------
-    saved : SavedCalibration
-        With its correction.
-    poses : Readings
-        By its settings: those it was corrected by. Their raw rows compare code and calibration.
-
-    Raises
-    ------
-    NoCodeError
-        If the document holds no program, or the code departs from the corrected calibration by
-        more than a tenth of its error.
+    Raw rows of the poses that it was corrected by compare code and calibration. NoCodeError if the
+    document holds no program, or the code departs by more than a tenth of the error.
     """
     program = _corrected(program_of(saved.document.get("flight")), saved)
     made = program.steps[0].constants
@@ -314,15 +262,7 @@ _ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class RawLimits:
-    """What readings of a sensor may be.
-
-    Attributes
-    ----------
-    low, high : ndarray, shape (K,)
-        Of each column of the settings: readings at or beyond them are clipped.
-    least_light, most_light : float
-        Of the sum of readings less dark over gain.
-    """
+    """What readings may be, by column of the settings, and their sum less dark over gain."""
 
     low: Floats
     high: Floats

@@ -23,21 +23,9 @@ _POWERS, _CLOSE = 4, 1e-9
 def faces_steps(
     model: Any, signals: Floats, context: Mapping[str, Floats]
 ) -> tuple[list[Step], str]:
-    """Return the steps from signals to a direction, and a word for them.
+    """Return the steps from signals (N, K) of the calibration to a direction, and a word for them.
 
-    Parameters
-    ----------
-    model : Model
-        Fitted; of signals, and of no context but a temperature.
-    signals : ndarray, shape (N, K)
-        Of the calibration.
-    context : mapping of str to ndarray
-        Of the calibration.
-
-    Raises
-    ------
-    NoCodeError
-        If the model or a compensation is none that code is written for.
+    NoCodeError if the model or a compensation is none that code is written for.
     """
     steps: list[Step] = []
     for stage in getattr(model, "compensations", ()):

@@ -50,21 +50,9 @@ def plane_steps(
 ) -> tuple[list[Step], str]:
     """Return the steps from two features to a direction, and a word for them.
 
-    Parameters
-    ----------
-    model : Model
-        Fitted; of two features, and of no context but a temperature.
-    features : ndarray, shape (N, 2)
-        Of the calibration.
-    context : mapping of str to ndarray
-        Of the calibration.
-    error_deg : float
-        RMS error of the model, a hundredth of which the steps may add.
-
-    Raises
-    ------
-    NoCodeError
-        If the chain answers nowhere inside its hull, or no polynomial follows its compensations.
+    Features (N, 2) are those of the calibration; the steps may add a hundredth of the model's RMS
+    error. NoCodeError if the chain answers nowhere inside its hull, or no polynomial follows its
+    compensations.
     """
     stages, last = tuple(getattr(model, "compensations", ())), getattr(model, "model", model)
     steps: list[Step] = []
@@ -97,27 +85,13 @@ def plane_steps(
 
 @dataclass(frozen=True)
 class _Family:
-    """Forms of one kind, the fewest constants first.
+    """Forms of one kind, the fewest constants first."""
 
-    Attributes
-    ----------
-    words : str
-        With ``{}`` for the order.
-    sizes : tuple of int
-        Constants of each order.
-    orders : tuple of tuple of int
-        What `make` is called with.
-    make : callable
-        Gives the steps of an order.
-    rising : bool
-        Whether orders are tried from the least: the most takes long, or errs more.
-    """
-
-    words: str
-    sizes: tuple[int, ...]
-    orders: tuple[tuple[int, ...], ...]
-    make: Callable[..., list[Step]]
-    rising: bool = False
+    words: str  # with ``{}`` for the order
+    sizes: tuple[int, ...]  # constants of each order
+    orders: tuple[tuple[int, ...], ...]  # what `make` is called with
+    make: Callable[..., list[Step]]  # gives the steps of an order
+    rising: bool = False  # from the least order on: the most takes long, or errs more
 
 
 @dataclass(frozen=True)

@@ -22,21 +22,14 @@ class NoCodeError(ValueError):
 class Step:
     """One step of a program: the function of this name in `runtime` and in the C templates.
 
-    Attributes
-    ----------
-    name : str
-    constants : mapping of str to number or ndarray
-        Integers become C enumerators in capitals, the rest constants of the same name.
-    operations : int
-        Most additions, multiplications, divisions and comparisons of real numbers.
-    calls : int
-        Most calls of the mathematics library.
+    Integers among the constants become C enumerators in capitals, the rest constants of the same
+    name.
     """
 
     name: str
     constants: Mapping[str, Any]
-    operations: int
-    calls: int = 0
+    operations: int  # most additions, multiplications, divisions and comparisons
+    calls: int = 0  # most calls of the mathematics library
 
 
 @dataclass(frozen=True)
@@ -55,24 +48,12 @@ class Thermometer:
 
 @dataclass(frozen=True)
 class Program:
-    """All steps of a sensor.
+    """All steps of a sensor."""
 
-    Attributes
-    ----------
-    columns : tuple of str
-        Of the raw readings, in the file's order.
-    steps : tuple of Step
-        In order; each but the last few reads what the one before left.
-    thermometer : Thermometer or None
-        None where no temperature is read.
-    words : str
-        What stands for the model, for a report.
-    """
-
-    columns: tuple[str, ...]
-    steps: tuple[Step, ...]
-    thermometer: Thermometer | None
-    words: str
+    columns: tuple[str, ...]  # of the raw readings, in the file's order
+    steps: tuple[Step, ...]  # each reads what the one before left
+    thermometer: Thermometer | None  # None where no temperature is read
+    words: str  # what stands for the model, for a report
 
     @property
     def operations(self) -> int:
@@ -106,22 +87,10 @@ def step_functions() -> dict[str, Callable[..., Any]]:
 def run(
     steps: tuple[Step, ...], values: Floats, kelvin: Floats | None = None
 ) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """Run steps on rows of values.
+    """Run steps on rows (N, K): return values (N, F), directions (N, 3) and statuses (N,).
 
-    Parameters
-    ----------
-    steps : tuple of Step
-    values : ndarray, shape (N, K)
-    kelvin : ndarray, shape (N,), optional
-
-    Returns
-    -------
-    values : ndarray, shape (N, F)
-        What the last step left.
-    sun : ndarray, shape (N, 3)
-        Unit vectors; NaN where the status is not 0.
-    status : ndarray of int, shape (N,)
-        The first that is not 0.
+    Values are what the last step left; directions are NaN where the status, the first that is not
+    0, says why.
     """
     functions = step_functions()
     sun = np.full((len(values), 3), np.nan)
@@ -162,13 +131,7 @@ def stored_program(program: Program) -> dict[str, Any]:
 
 
 def program_of(stored: Mapping[str, Any] | None) -> Program:
-    """Return the program that a document holds.
-
-    Raises
-    ------
-    NoCodeError
-        If it holds none, or what is none.
-    """
+    """Return the program that a document holds; NoCodeError if it holds none, or what is none."""
     if stored is None:
         raise NoCodeError(
             "the old document holds no program: no code was written with it, or it is older than "
@@ -207,42 +170,20 @@ _NONE = 1e33
 
 @dataclass(frozen=True)
 class Vectors:
-    """Raw readings in the file's order and what is expected of them.
+    """Raw readings in the file's order and what is expected of them."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (V, K)
-    temperature : ndarray, shape (V,)
-        As the file has it.
-    sun : ndarray, shape (V, 3)
-        Of the model; NaN where the status is not 0.
-    status : ndarray of int, shape (V,)
-    largest_deg : float
-        Largest difference of the program from the model on them.
-    """
-
-    values: Floats
-    temperature: Floats
-    sun: Floats
+    values: Floats  # (V, K)
+    temperature: Floats  # (V,), as the file has it
+    sun: Floats  # (V, 3), of the model; NaN where the status is not 0
     status: NDArray[np.int64]
-    largest_deg: float
+    largest_deg: float  # largest difference of the program from the model
 
     def __len__(self) -> int:
         return len(self.values)
 
 
 def vectors_of(program: Program, raw: Floats, kelvin: Floats, model: Floats) -> Vectors:
-    """Return rows spread over the field, then rows that must be refused.
-
-    Parameters
-    ----------
-    program : Program
-    raw : ndarray, shape (N, K)
-        Of the calibration, in the file's order.
-    kelvin : ndarray, shape (N,)
-    model : ndarray, shape (N, 3)
-        Answers of the fitted model; NaN where it has none.
-    """
+    """Return raw rows of the calibration spread over the field, then rows that must be refused."""
     _, sun, status = run(program.steps, raw, kelvin)
     off = separation_deg(sun, model)
     known = np.flatnonzero((status == 0) & np.isfinite(off))

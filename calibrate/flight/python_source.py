@@ -20,16 +20,8 @@ def python_module(
 ) -> str:
     """Return the text of a module with ``solve``, ``sun`` and ``selftest``.
 
-    Parameters
-    ----------
-    program : Program
-    answers : Answers
-    vectors : Vectors
-        Of the self-test.
-    said : mapping of str to str
-        What comments at the top say.
-    digest : str
-        SHA-256 of the calibration, hexadecimal digits.
+    `said` is what comments at the top say, `digest` the SHA-256 of the calibration in hexadecimal
+    digits.
     """
     steps = ",\n    ".join(f"({step.name}, {_mapping(step.constants)})" for step in program.steps)
     return _MODULE.format(

@@ -24,23 +24,11 @@ def are_matrices(columns: Floats) -> bool:
 
 
 def rotated(columns: Floats, light: Floats, *, scalar_first: bool, to_sensor: bool) -> Floats:
-    """Return the light's direction (N, 3) in the sensor's frame.
+    """Return the light's direction (N, 3) in the sensor's frame; NaN rows of what is no rotation.
 
-    Parameters
-    ----------
-    columns : ndarray, shape (N, 4) or (N, 9)
-        Quaternions, or matrices row by row.
-    light : ndarray, shape (N, 3)
-        Directions in the outer frame.
-    scalar_first : bool
-        Of quaternions.
-    to_sensor : bool
-        Whether ``v' = R v`` (or ``q v q*``) gives the sensor's frame; its inverse does otherwise.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-        Unit vectors; NaN rows where an attitude is no rotation.
+    Columns are quaternions (N, 4) or matrices row by row (N, 9), the light (N, 3) is that in the
+    outer frame. `to_sensor` says whether ``v' = R v`` (or ``q v q*``) gives the sensor's frame; its
+    inverse does otherwise.
     """
     matrices = (
         columns.reshape(-1, 3, 3)
@@ -99,21 +87,12 @@ _TERMS = (
 
 
 def sun_by_date(seconds: Floats) -> Floats:
-    """Return the Sun's apparent direction from Earth's centre in the frame of J2000.
+    """Return the Sun's apparent direction (N, 3) from Earth's centre in the frame of J2000.
 
-    By the Sun's mean elements with the largest perturbations (Meeus, Astronomical Formulae for
-    Calculators, chapter 18). Light time and the aberration of the Earth's motion are included, a
-    satellite's own motion (up to 0.0015 deg) and parallax (0.003 deg in a low orbit) are not.
-
-    Parameters
-    ----------
-    seconds : ndarray, shape (N,)
-        Since 1970, UTC.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-        Unit vectors.
+    By seconds since 1970, UTC, and the Sun's mean elements with the largest perturbations (Meeus,
+    Astronomical Formulae for Calculators, chapter 18). Light time and the aberration of the Earth's
+    motion are included, a satellite's own motion (up to 0.0015 deg) and parallax (0.003 deg in a
+    low orbit) are not.
     """
     t = (np.asarray(seconds, dtype=np.float64) + _TT_UTC_S - _J2000_S) / _CENTURY_S
     t1900 = t + 1.0

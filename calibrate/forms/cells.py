@@ -34,24 +34,12 @@ _DATE = re.compile(r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}([T\s].*)?|\d{1,2}[./-]\d{1,2}
 
 @dataclass(frozen=True)
 class Numbers:
-    """A column of cells as numbers.
+    """A column of cells as numbers."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (n,)
-        NaN where a cell is blank or none.
-    unit : str or None
-        Where the cells themselves say it.
-    note : str
-        How they were read, where not as plain numbers; empty otherwise.
-    wrong : ndarray of bool, shape (n,)
-        Cells that are neither numbers nor blank.
-    """
-
-    values: Floats
-    unit: str | None
-    note: str
-    wrong: np.ndarray
+    values: Floats  # (n,), NaN where a cell is blank or none
+    unit: str | None  # where the cells themselves say it
+    note: str  # how they were read, where not as plain numbers
+    wrong: np.ndarray  # (n,), cells that are neither numbers nor blank
 
 
 def looks_numeric(cell: str) -> bool:
@@ -64,17 +52,10 @@ def looks_numeric(cell: str) -> bool:
 
 
 def numbers_of(cells: pd.Series[str], decimal: str, *, of_time: bool) -> Numbers:
-    """Return a column of cells as numbers, by the form that reads most of them.
+    """Return a column of stripped cells as numbers, by the form that reads most of them.
 
-    Parameters
-    ----------
-    cells : Series of str
-        Stripped.
-    decimal : str
-        ``"."`` or ``","``.
-    of_time : bool
-        Whether three numbers with colons are hours, minutes and seconds, in seconds, instead of
-        degrees.
+    `decimal` is ``"."`` or ``","``; `of_time` says whether three numbers with colons are hours,
+    minutes and seconds, in seconds, instead of degrees.
     """
     text = cells.str.replace("\u2212", "-", regex=False)
     blank = text.str.lower().isin(BLANK).to_numpy()

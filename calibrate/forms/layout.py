@@ -19,22 +19,12 @@ _COMMENT = re.compile(r"\s*(#|%|//|;|!)+\s*")
 
 @dataclass(frozen=True)
 class Layout:
-    """Places of a table's parts, rows counted from 0.
+    """Places of a table's parts, rows counted from 0."""
 
-    Attributes
-    ----------
-    header, units : int or None
-        Rows of names and of units.
-    data : int
-        First row of data.
-    names, unit_cells : tuple of str
-        Their cells; no names where there is no header, no units where there is no such row.
-    """
-
-    header: int | None
-    units: int | None
-    data: int
-    names: tuple[str, ...] = ()
+    header: int | None  # row of names
+    units: int | None  # row of units
+    data: int  # first row of data
+    names: tuple[str, ...] = ()  # none where there is no header
     unit_cells: tuple[str, ...] = ()
 
     @property
@@ -77,14 +67,8 @@ def layout_of(
 ) -> Layout:
     """Return where the parts of a table stand.
 
-    Parameters
-    ----------
-    rows : sequence of sequences of str
-        Cells from the top of the file; of a comment those behind its mark.
-    comments : sequence of bool
-        Which rows are comments.
-    header_row : int, optional
-        Row of names as counted in the file from 1, 0 for none; found otherwise.
+    Rows are cells from the top of the file, of a comment those behind its mark. The row of names is
+    counted in the file from 1, 0 for none; it is found where it is not stated.
     """
     if header_row is not None:
         header = header_row - 1
@@ -146,12 +130,8 @@ def _could_be_names(cells: Sequence[str]) -> bool:
 def separator_of(lines: Sequence[str], split: Sequence[tuple[str, Sequence[Sequence[str]]]]) -> str:
     """Return the separator under which most cells of most lines are numbers, in columns.
 
-    Parameters
-    ----------
-    lines : sequence of str
-        That are neither blank nor comments.
-    split : sequence of (str, rows)
-        Each separator, the most telling first, and the cells of each line under it.
+    Lines are neither blank nor comments; `split` has each separator, the most telling first, and
+    the cells of each line under it.
     """
     best, found = 0.0, split[0][0]
     for separator, rows in split:

@@ -47,21 +47,9 @@ _SAMPLED = 50_000
 
 
 def decoded(data: bytes, source: str, encoding: str | None = None) -> tuple[str, str]:
-    """Return a file's text and the name of its encoding.
+    """Return a file's text and the name of its encoding, which is found where it is not stated.
 
-    Parameters
-    ----------
-    data : bytes
-        Of the file.
-    source : str
-        Its name, for messages.
-    encoding : str, optional
-        As the reader states it; found otherwise.
-
-    Raises
-    ------
-    TableError
-        If the bytes are no text of that encoding, or hold null characters.
+    TableError if the bytes are no text of that encoding, or hold null characters.
     """
     name = encoding or _encoding(data)
     try:
@@ -105,53 +93,21 @@ _ENDS = re.compile(r"\r\n|\n|\r")
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells of a table, before any is a number.
+    """Cells of a table, before any is a number."""
 
-    Attributes
-    ----------
-    frame : DataFrame of str
-        A column a place; names are `names`.
-    names : tuple of str
-        Of the columns; empty strings where the header has none, no name at all without a header.
-    units : tuple of str
-        A cell a column, where the file has a row of units.
-    rows : ndarray of int, shape (n,)
-        Number of each row in the file, the first is 1.
-    decimal : str
-        ``"."`` or ``","``.
-    header_row : int
-        Row of the names, 0 for none.
-    notes : tuple of str
-        How the file was read.
-    """
-
-    frame: pd.DataFrame
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    rows: NDArray[np.int64]
-    decimal: str
-    header_row: int
-    notes: tuple[str, ...]
+    frame: pd.DataFrame  # of str, a column a place
+    names: tuple[str, ...]  # empty where the header has none; none without a header
+    units: tuple[str, ...]  # a cell a column, where the file has a row of units
+    rows: NDArray[np.int64]  # (n,), of each row in the file, the first is 1
+    decimal: str  # ``"."`` or ``","``
+    header_row: int  # of the names, 0 for none
+    notes: tuple[str, ...]  # how the file was read
 
 
 def cells_of_text(data: bytes, source: str, stated: FileSettings, most_rows: int) -> Cells:
-    """Return the cells of a text file.
+    """Return the cells of a text file, at most so many rows; what is not stated of it is found.
 
-    Parameters
-    ----------
-    data : bytes
-        Of the file.
-    source : str
-        Its name, for messages.
-    stated : FileSettings
-        What the reader says of it; the rest is found.
-    most_rows : int
-        Rows of data that are taken at most.
-
-    Raises
-    ------
-    TableError
-        If rows have different numbers of cells, or it is no text.
+    TableError if rows have different numbers of cells, or it is no text.
     """
     text, encoding = decoded(data, source, stated.encoding)
     lines = _ENDS.split(text)
@@ -261,23 +217,9 @@ def _notes(encoding: str, separator: str, decimal: str, layout: Layout, comments
 
 
 def cells_of_workbook(data: bytes, source: str, stated: FileSettings, most_rows: int) -> Cells:
-    """Return the cells of a workbook's sheet.
+    """Return the cells of a workbook's sheet, by default of the one with most numbers.
 
-    Parameters
-    ----------
-    data : bytes
-        Of the file.
-    source : str
-        Its name, for messages.
-    stated : FileSettings
-        What the reader says of it; the rest is found.
-    most_rows : int
-        Rows that are taken at most of each sheet.
-
-    Raises
-    ------
-    TableError
-        If it is no workbook, or has no such sheet.
+    TableError if it is no workbook, or has no such sheet.
     """
     try:
         sheets = pd.read_excel(

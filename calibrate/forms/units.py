@@ -95,20 +95,12 @@ _DEGREE_SIGN = re.compile(r"(?P<name>.+?)\s*(?P<unit>[°º˚])")
 
 
 class Named(BaseModel):
-    """A column's name without its unit.
-
-    Attributes
-    ----------
-    bare : str
-        In lower case, words joined by ``_``.
-    unit : str or None
-        As this module spells it; None where the name says none.
-    """
+    """A column's name without its unit."""
 
     model_config = ConfigDict(frozen=True)
 
-    bare: str
-    unit: str | None
+    bare: str  # in lower case, words joined by ``_``
+    unit: str | None  # as this module spells it
 
     @property
     def key(self) -> str:

@@ -28,17 +28,11 @@ _HALVINGS = 40
 class Grazing:
     """By how much the scale of errors along a face's normal grows where light grazes the face.
 
-    Attributes
-    ----------
-    normals : ndarray, shape (P, 3)
-        Unit vectors, one of each face; none where the scale does not grow.
-    sine : float
-        Of the angle from a face's plane, at which it grows no more.
-    grown : float
-        Variance along the normal that is added in the plane, over that around it.
+    At `sine`, of the angle from a face's plane, it grows no more; `grown` is the variance along the
+    normal that is added in the plane, over that around it.
     """
 
-    normals: Floats
+    normals: Floats  # (P, 3), of each face; none where the scale does not grow
     sine: float = 1.0
     grown: float = 0.0
 
@@ -56,16 +50,8 @@ def grazing_of(over: Floats, answers: Floats, normals: Floats) -> Grazing:
     """Return where errors grow, if they clearly do.
 
     How wide strips are is what makes the errors likeliest; how much the scale grows there, what
-    holds 95 % of them, since errors in strips are far from normal.
-
-    Parameters
-    ----------
-    over : ndarray, shape (N, 2)
-        Sizes of errors along the tangent axes over their scale by place.
-    answers : ndarray, shape (N, 3)
-        Directions that were answered: what is known in flight.
-    normals : ndarray, shape (P, 3)
-        Of the faces.
+    holds 95 % of them, since errors in strips are far from normal. Errors (N, 2) along the tangent
+    axes are over their scale by place; directions (N, 3) are those answered, known in flight.
     """
     if not len(normals) or not over.any():
         return Grazing.none()

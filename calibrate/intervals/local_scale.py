@@ -27,15 +27,8 @@ _ROUNDS = 40
 def scale_of(along: Floats, sun: Floats, grid: Grid) -> Floats:
     """Return the standard deviation of errors (K, M, 2) at a grid's centres, degrees.
 
-    Of normal errors; of others, 1.25 times their mean size.
-
-    Parameters
-    ----------
-    along : ndarray, shape (N, 2)
-        Errors along the tangent axes, degrees.
-    sun : ndarray, shape (N, 3)
-        Their directions.
-    grid : Grid
+    Of errors (N, 2) along the tangent axes of directions (N, 3): that of normal errors; of others,
+    1.25 times their mean size.
     """
     weights = grid.weights(sun)
     rings, sectors = weights

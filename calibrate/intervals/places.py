@@ -21,20 +21,13 @@ _ALL_AROUND_DEG = 170.0
 
 @dataclass(frozen=True)
 class Grid:
-    """Ring and sector centres.
+    """Ring and sector centres about an axis (3,).
 
-    Attributes
-    ----------
-    axis : ndarray, shape (3,)
-        Unit vector that rings lie about.
-    rings_deg : ndarray, shape (K,)
-        Off-axis angles, from 0 on.
-    sectors : int
-        Of each ring, the first at the azimuth of +x (of +y about an axis within 26 deg of x).
+    The first sector is at the azimuth of +x (of +y about an axis within 26 deg of x).
     """
 
     axis: Floats
-    rings_deg: Floats
+    rings_deg: Floats  # off-axis angles (K,), from 0 on
     sectors: int
 
     @classmethod

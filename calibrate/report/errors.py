@@ -26,24 +26,12 @@ _ROUNDING_DEG = 1e-9
 
 @dataclass(frozen=True)
 class Errors:
-    """Samples with the errors they had when they were left out.
-
-    Attributes
-    ----------
-    readings : Readings
-        M samples.
-    offsets : ndarray, shape (M, 3)
-        Predicted minus true direction; NaN where not answered or not tested.
-    errors_deg : ndarray, shape (M,)
-        Angle between both; NaN where not tested.
-    sigma_deg : ndarray, shape (M, 2)
-        Stated 1-sigma of two tangent axes.
-    """
+    """Samples with the errors they had when they were left out."""
 
     readings: Readings
-    offsets: Floats
-    errors_deg: Floats
-    sigma_deg: Floats
+    offsets: Floats  # (M, 3), predicted minus true; NaN where not answered or tested
+    errors_deg: Floats  # (M,), angle between both; NaN where not tested
+    sigma_deg: Floats  # (M, 2), stated 1-sigma of two tangent axes
 
     @classmethod
     def of(cls, found: Calibration) -> Errors:
@@ -85,31 +73,17 @@ class Errors:
 
 @dataclass(frozen=True)
 class Row:
-    """Errors of some samples; NaN where there are too few to tell.
-
-    Attributes
-    ----------
-    name : str
-    samples : int
-    mean_deg : float
-        Of errors with a sign; NaN of angles, which have none.
-    rms_deg, level95_deg, level3_deg, largest_deg : float
-        Root mean square, bounds that 95 % and 99.73 % stay below, and the largest.
-    coverage : float
-        Share within the stated 95 % intervals.
-    sigma_deg : float
-        RMS of the stated 1-sigma.
-    """
+    """Errors of some samples; NaN where there are too few to tell."""
 
     name: str
     samples: int
-    mean_deg: float
+    mean_deg: float  # of errors with a sign; NaN of angles, which have none
     rms_deg: float
-    level95_deg: float
-    level3_deg: float
+    level95_deg: float  # bound that 95 % stay below
+    level3_deg: float  # bound that 99.73 % stay below
     largest_deg: float
-    coverage: float = float("nan")
-    sigma_deg: float = float("nan")
+    coverage: float = float("nan")  # share within the stated 95 % intervals
+    sigma_deg: float = float("nan")  # RMS of the stated 1-sigma
 
 
 def level(errors: Floats, share: float) -> float:
@@ -183,19 +157,11 @@ def by_temperature(found: Errors) -> list[Row]:
 
 @dataclass(frozen=True)
 class Field:
-    """The region that was measured, as angles from the boresight.
+    """The region that was measured, as angles from the boresight."""
 
-    Attributes
-    ----------
-    least_deg, most_deg : float
-        Off-axis angle that poses reach in every direction, and in some.
-    reach : tuple of (float, float)
-        Azimuth from +x towards +y and the off-axis angle reached there, degrees.
-    """
-
-    least_deg: float
-    most_deg: float
-    reach: tuple[tuple[float, float], ...]
+    least_deg: float  # that poses reach in every direction
+    most_deg: float  # and in some
+    reach: tuple[tuple[float, float], ...]  # azimuth from +x towards +y, off-axis angle there
 
 
 def field_of(sun: Floats, azimuths: int = _AZIMUTHS) -> Field | None:

@@ -23,49 +23,22 @@ from calibrate.table import Table, TableError, read_table
 
 @dataclass(frozen=True)
 class Compared:
-    """Errors of a factory's calibration and of this one, on the same rows.
+    """Errors of a factory's calibration and of this one, left out, on the same rows."""
 
-    Attributes
-    ----------
-    name : str
-        Of the file, and how it was read.
-    samples : int
-        Rows that both answer.
-    unanswered : int
-        Rows that the factory's calibration does not answer.
-    rms_deg, level95_deg, largest_deg : tuple of two float
-        Of the factory's, and of this one on samples left out.
-    turned_rms_deg : float
-        The factory's after the rotation that fits best, as of another mount.
-    """
-
-    name: str
-    samples: int
-    unanswered: int
-    rms_deg: tuple[float, float]
+    name: str  # of the file, and how it was read
+    samples: int  # rows that both answer
+    unanswered: int  # rows that the factory's does not answer
+    rms_deg: tuple[float, float]  # of the factory's, and of this one
     level95_deg: tuple[float, float]
     largest_deg: tuple[float, float]
-    turned_rms_deg: float
+    turned_rms_deg: float  # after the rotation that fits best, as of another mount
 
 
 def compared_with(path: Path, found: Calibration, tables: Sequence[Table]) -> Compared:
-    """Compare a calibration with a factory's.
+    """Compare a calibration with a factory's: a saved JSON, or a table, which is interpolated.
 
-    Parameters
-    ----------
-    path : Path
-        ``.json`` of a calibration that was saved, or a table of readings and directions, which is
-        interpolated.
-    found : Calibration
-    tables : sequence of Table
-        What it was calibrated on.
-
-    Raises
-    ------
-    TableError
-        If no row is answered by both.
-    UnreadableCalibrationError
-        If the JSON is no calibration.
+    `tables` are those that it was calibrated on. TableError if no row is answered by both;
+    UnreadableCalibrationError if the JSON is no calibration.
     """
     if path.suffix.lower() == ".json":
         sun, said = _of_document(path, found, tables), "a saved calibration"

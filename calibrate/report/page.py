@@ -43,21 +43,11 @@ _LONGEST = 160
 
 @dataclass(frozen=True)
 class Asked:
-    """What is wanted of a report beside the calibration itself.
+    """What is wanted of a report beside the calibration itself."""
 
-    Attributes
-    ----------
-    requirements : tuple of Requirement
-        On its errors.
-    compared : Compared, optional
-        With a factory's calibration.
-    certificate : str
-        Name of the certificate among the files; empty for none.
-    """
-
-    requirements: tuple[Requirement, ...] = ()
-    compared: Compared | None = None
-    certificate: str = ""
+    requirements: tuple[Requirement, ...] = ()  # on its errors
+    compared: Compared | None = None  # with a factory's calibration
+    certificate: str = ""  # its name among the files; empty for none
 
 
 def outcomes(found: Calibration, asked: Asked) -> list[Judged]:
@@ -77,17 +67,8 @@ def report(
 ) -> str:
     """Return the report as HTML text: the verdict first.
 
-    Parameters
-    ----------
-    found : Calibration
-    command : str
-        What was called.
-    code : str
-        What the flight code does and adds, in a sentence; empty where there is none.
-    asked : Asked, optional
-        Requirements, and a factory's calibration to compare with.
-    today : date, optional
-        Of the report; by default today in UTC.
+    `command` was called; `code` says what the flight code does and adds, empty where there is none;
+    the report's date is by default today in UTC.
     """
     wanted = asked or Asked()
     errors = Errors.of(found)
@@ -190,19 +171,9 @@ def correction_report(
     said: Mapping[str, str],
     today: dt.date | None = None,
 ) -> str:
-    """Return the report of a correction as HTML text.
+    """Return the report of a correction, by its poses, as HTML text.
 
-    Parameters
-    ----------
-    found : Correction
-    poses : Readings
-        That it was found by.
-    outcomes : sequence of Judged
-        Of requirements.
-    said : mapping of str to str
-        What else is said, by its name.
-    today : date, optional
-        Of the report; by default today in UTC.
+    `said` is what else is said, by its name; the date is by default today in UTC.
     """
     off = _off_axis_deg(poses)
     order = np.argsort(-np.nan_to_num(found.errors_deg, nan=np.inf), kind="stable")

@@ -26,23 +26,12 @@ class RequirementError(ValueError):
 
 @dataclass(frozen=True)
 class Requirement:
-    """A largest error of a share of directions.
+    """A largest error of a share of directions."""
 
-    Attributes
-    ----------
-    text : str
-        As it was stated.
-    limit_deg : float
-    share : float or None
-        Of directions whose error is to stay within the limit; None for the RMS.
-    half_angle_deg : float or None
-        Off-axis angle up to which it holds, half the field of view; None for all poses.
-    """
-
-    text: str
+    text: str  # as it was stated
     limit_deg: float
-    share: float | None
-    half_angle_deg: float | None
+    share: float | None  # of directions within the limit; None for the RMS
+    half_angle_deg: float | None  # off-axis angle up to which it holds; None for all
 
     @property
     def words(self) -> str:
@@ -60,24 +49,14 @@ class Requirement:
 class Judged:
     """Whether a requirement is met.
 
-    Attributes
-    ----------
-    requirement : Requirement
-    word : {"met", "not met", "not shown"}
-        Not shown where poses are too few or do not reach far enough.
-    found_deg : float
-        Error at the level asked; NaN where not known.
-    samples : int
-        Poses left out that tell it.
-    reason : str
-        Empty where `found_deg` says it all.
+    Not shown where poses are too few or do not reach far enough.
     """
 
     requirement: Requirement
-    word: str
-    found_deg: float
-    samples: int
-    reason: str = ""
+    word: str  # met, not met or not shown
+    found_deg: float  # error at the level asked; NaN where not known
+    samples: int  # poses left out that tell it
+    reason: str = ""  # empty where `found_deg` says it all
 
     @property
     def margin_deg(self) -> float:
@@ -100,10 +79,7 @@ class Judged:
 def requirement(text: str) -> Requirement:
     """Return a requirement such as ``0.1deg@3sigma,60deg``, ``0.05deg@95%`` or ``3arcmin@rms``.
 
-    Raises
-    ------
-    RequirementError
-        If it is none.
+    RequirementError if it is none.
     """
     found = _FORM.fullmatch(text.strip())
     if found is None:

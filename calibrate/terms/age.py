@@ -31,23 +31,12 @@ _TELLS = 0.03
 
 @dataclass(frozen=True)
 class Changes:
-    """What readings and directions are since a calibration, over what they were.
+    """What readings and directions are since a calibration, over what they were."""
 
-    Attributes
-    ----------
-    gain, offset : ndarray, shape (K,)
-        A reading is now ``gain`` times what it was, plus ``offset``.
-    rotation : ndarray, shape (3, 3)
-        That takes the old directions to the new ones.
-    gain_sigma, offset_sigma : ndarray, shape (K,)
-        Standard errors; 0 of what did not change.
-    turn_sigma_deg : float
-    """
-
-    gain: Floats
-    offset: Floats
-    rotation: Floats
-    gain_sigma: Floats
+    gain: Floats  # (K,), of readings
+    offset: Floats  # (K,), added then
+    rotation: Floats  # (3, 3), from the old directions to the new ones
+    gain_sigma: Floats  # (K,), standard errors; 0 of what did not change
     offset_sigma: Floats
     turn_sigma_deg: float = 0.0
 
@@ -74,17 +63,6 @@ def answered(old: Any, readings: Readings, changes: Changes) -> Floats:
 def fit(old: Any, readings: Readings, kinds: Sequence[Kind]) -> Changes:
     """Return the changes of some kinds that explain poses best; wrong poses hardly count.
 
-    Parameters
-    ----------
-    old : SavedCalibration
-        Or what has its ``settings`` and ``predict``.
-    readings : Readings
-        Poses taken since.
-    kinds : sequence of Kind
-        Of the changes; others stay none.
-
-    Notes
-    -----
     Gauss and Newton's steps on the residuals' length, weighted by its inverse. Of gains and offsets
     of single readings, those below three standard errors are taken for none and the others fitted
     again: few poses tell of few changes. A gain that all readings share changes no direction: gains

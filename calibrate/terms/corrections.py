@@ -21,10 +21,7 @@ _LARGEST, _ROTATES = 1e15, 1e-6
 class Corrected:
     """Features are now ``gain`` times what they were, plus ``offset``, and directions turned.
 
-    Attributes
-    ----------
-    offset, gain : ndarray, shape (F,) or ()
-    rotation : ndarray, shape (3, 3)
+    Gain and offset are (F,) or one number.
     """
 
     offset: Floats
@@ -35,10 +32,7 @@ class Corrected:
     def of(cls, stored: Any, settings: Settings) -> Self:
         """Return what a document has as its correction.
 
-        Raises
-        ------
-        UnreadableCalibrationError
-            If one of its numbers is none; the message names it.
+        UnreadableCalibrationError if one of its numbers is none; the message names it.
         """
         if not isinstance(stored, Mapping):
             raise UnreadableCalibrationError(f"correction must be a table; got {str(stored)[:60]}")
@@ -96,11 +90,8 @@ def with_changes(settings: Settings, offset: Floats, gain: Floats) -> Settings:
 def numbers(value: Any, shape: tuple[int, ...], name: str, above: float = -np.inf) -> Floats:
     """Return numbers of a document as an array.
 
-    Raises
-    ------
-    UnreadableCalibrationError
-        If they are not of that shape, or one is no number, not above a limit, or so large that no
-        reading is: 1e15 and more.
+    UnreadableCalibrationError if they are not of that shape, or one is no number, not above a
+    limit, or so large that no reading is: 1e15 and more.
     """
     if not all(_is_number(one, above) for one in _flat(value)) or np.shape(value) != shape:
         wanted = " by ".join(str(size) for size in shape) or "one"

@@ -201,12 +201,7 @@ TERMS: dict[str, type[Compensation]] = {
 def with_temperature(models: Mapping[str, Scored], kind: FeatureKind) -> dict[str, Scored]:
     """Return chains of a term of temperature and each simple model there is, by name.
 
-    Parameters
-    ----------
-    models : mapping of str to class or Chain
-        That apply to the readings.
-    kind : FeatureKind
-        Of the readings.
+    Of the models, by name, that apply to readings of this kind.
     """
     found: dict[str, Scored] = {}
     for name, stage in TERMS.items():

@@ -79,6 +79,13 @@ def write(path: Path, header: list[str], *columns: np.ndarray) -> Path:
 HEADER = ["x_px", "y_px", "theta_x_deg", "theta_y_deg"]
 
 
+def balances(sun: np.ndarray, seed: int) -> np.ndarray:
+    """Balances of two pairs of photodiodes whose gains differ and that saturate softly."""
+    tangents = sun[:, :2] / sun[:, 2:]
+    noise = np.random.default_rng(seed).normal(0.0, 0.003, tangents.shape)
+    return np.tanh(0.55 * tangents + [0.02, -0.01]) * [1.0, 0.96] + noise
+
+
 def electrodes(sun: np.ndarray, seed: int) -> np.ndarray:
     """Currents x+, x-, y+, y- of a position-sensitive detector behind a hole, with barrel error."""
     tangents = sun[:, :2] / sun[:, 2:] @ turn("z", 1.0)[:2, :2].T
