@@ -12,7 +12,6 @@ import numpy as np
 
 from algorithms.calibration.documents import DIGEST
 from calibrate.calibration import Calibration
-from calibrate.certificate.certificate import certificate
 from calibrate.documents import (
     SavedCalibration,
     document,
@@ -25,6 +24,7 @@ from calibrate.flight.names import c_name
 from calibrate.flight.program import NoCodeError
 from calibrate.one_axis import AxisCurve
 from calibrate.recalibration import Correction, poses_of
+from calibrate.report.certificate import certificate
 from calibrate.report.page import Asked, correction_report, outcomes_of, report
 from calibrate.report.requirement import Judged, Requirement
 from files.atomic import replace_in_directory

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import stat
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
+
+from files.reading import FileRefusedError, read_json
 
 #: Member that holds the digest of all the others.
 DIGEST = "digest"
@@ -59,62 +59,18 @@ def read_document(path: Path) -> Any:
     Raises
     ------
     DocumentError
-        For what is no regular file, is too large, is no JSON in UTF-8, or has a key twice, a number
-        that is not finite, or arrays and objects nested deeper than 50.
+        As `files.reading.read_json` refuses, or for arrays and objects nested deeper than 50.
     OSError
-        If it cannot be opened.
+        If nothing has this name.
     """
-    data = _bytes(path)
     try:
-        value = json.loads(
-            data.decode("utf-8"),
-            object_pairs_hook=_unique,
-            parse_constant=_refuse,
-            parse_float=_finite,
-        )
-    except json.JSONDecodeError as error:
-        raise DocumentError(f"not JSON: {error.msg}, line {error.lineno}") from error
-    except RecursionError as error:
-        raise DocumentError(f"not JSON: nested deeper than {_DEEPEST}") from error
-    except ValueError as error:
-        raise DocumentError(f"not JSON: {str(error)[:200]}") from error
+        value = read_json(path, LARGEST_BYTES)
+    except FileRefusedError as error:
+        place = "" if error.line is None else f", line {error.line}"
+        raise DocumentError(f"{error.reason}{place}") from error
     if _is_deep(value):
         raise DocumentError(f"not JSON: nested deeper than {_DEEPEST}")
     return value
-
-
-def _bytes(path: Path) -> bytes:
-    # Never waits: a pipe that nobody writes to would else be waited for.
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    handle = os.open(path, flags)
-    if not stat.S_ISREG(os.fstat(handle).st_mode):
-        os.close(handle)
-        raise DocumentError("expected a file, got a directory, a pipe or a device")
-    with os.fdopen(handle, "rb") as file:
-        data = file.read(LARGEST_BYTES + 1)
-    if len(data) > LARGEST_BYTES:
-        raise DocumentError(f"expected at most {LARGEST_BYTES} bytes, got more")
-    return data
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, value in pairs:
-        if name in found:
-            raise ValueError(f"the key {name[:40]!r} stands twice in an object")
-        found[name] = value
-    return found
-
-
-def _refuse(word: str) -> Any:
-    raise ValueError(f"{word} is no number")
-
-
-def _finite(text: str) -> float:
-    number = float(text)
-    if number in (float("inf"), float("-inf")):
-        raise ValueError(f"{text[:40]} is out of range")
-    return number
 
 
 def _is_deep(value: Any) -> bool:

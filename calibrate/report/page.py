@@ -15,7 +15,6 @@ from markupsafe import Markup
 
 from algorithms.contract import Floats
 from calibrate.calibration import Calibration
-from calibrate.certificate.elements import COVERAGE_FACTOR
 from calibrate.documents import selection_table, versions
 from calibrate.readings import Readings
 from calibrate.recalibration import Correction
@@ -35,6 +34,8 @@ from calibrate.report.requirement import Judged, Requirement, judged
 from calibrate.settings import UNSTATED
 
 _TEMPLATES = Path(__file__).parent
+#: Coverage factor of the expanded uncertainties of a certificate.
+COVERAGE_FACTOR = 2.0
 #: Rows left out, or poses of a correction, that are listed one by one; the JSON has all.
 _LISTED, _LISTED_RUNS = 60, 30
 #: Letters of a reason or a refusal that are shown.

@@ -15,10 +15,10 @@ from algorithms.calibration.documents import DIGEST
 from algorithms.calibration.saving import UnreadableCalibrationError
 from calibrate import documents, products
 from calibrate.calibration import Calibration, calibrate
-from calibrate.certificate.certificate import certificate
 from calibrate.documents import load, save, with_correction
 from calibrate.recalibration import Correction
 from calibrate.recalibration import Errors as CorrectionErrors
+from calibrate.report.certificate import certificate
 
 VECTOR = ["sun_x", "sun_y", "sun_z"]
 FACES = ["xp", "xm", "yp", "ym", "zp", "zm"]

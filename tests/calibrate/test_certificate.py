@@ -12,7 +12,7 @@ from typer.main import get_command
 
 from api.cli.commands.calibrate import app
 from calibrate import calibration, products
-from calibrate.certificate.certificate import certificate
+from calibrate.report.certificate import certificate
 from calibrate.roles import guess
 from calibrate.settings import CertificateSettings
 from calibrate.table import read_table

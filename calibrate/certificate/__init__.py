@@ -1,1 +1,0 @@
-"""A calibration as a digital calibration certificate (DCC), the metrologists' XML."""
