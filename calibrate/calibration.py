@@ -14,7 +14,6 @@ from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, Unus
 from algorithms.threads import one_thread
 from calibrate.causes.applying import applied_to, one_plane, read_as
 from calibrate.causes.bad_cells import ReadingLimits, joined_levels, limits_of
-from calibrate.causes.held_out import Part, parts_of
 from calibrate.causes.untested import doubt_of_light, untested_in
 from calibrate.conventions.channels import face_normals
 from calibrate.conventions.finding import Finding
@@ -57,9 +56,11 @@ from calibrate.uncertainty import (
     tangent_offsets,
 )
 from calibrate.verdict import (
+    Part,
     Verdict,
     judge,
     next_poses,
+    parts_of,
     patterns_in,
     with_uncertain_conventions,
     withheld,
@@ -158,7 +159,7 @@ class Calibration:
     def deviations_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
     ) -> Floats:
-        """Return the 1-sigma (N, 2) of both axes of `calibrate.intervals.places.tangent_axes`.
+        """Return the 1-sigma (N, 2) of both axes of `calibrate.places.tangent_axes`.
 
         In degrees, at features (N, F): by the place of the direction, or as the model states it
         where there were too few samples for intervals. NaN where nothing is answered.

@@ -24,9 +24,8 @@ from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from calibrate.calibration import Calibration
 from calibrate.flight.program import Program, stored_program
-from calibrate.intervals.grazing import Grazing
-from calibrate.intervals.places import tangent_axes
 from calibrate.one_axis import AxisCurve
+from calibrate.places import Grazing, tangent_axes
 from calibrate.readings import readings_of
 from calibrate.recalibration import Correction
 from calibrate.selection import deviation_of, unbounded
@@ -141,7 +140,7 @@ class SavedCalibration:
     def deviations_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
     ) -> Floats:
-        """Return the 1-sigma (N, 2) of both axes of `calibrate.intervals.places.tangent_axes`.
+        """Return the 1-sigma (N, 2) of both axes of `calibrate.places.tangent_axes`.
 
         In degrees, at features (N, F).
         """

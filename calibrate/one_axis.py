@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,7 +22,7 @@ from calibrate.causes.applying import File
 from calibrate.causes.bad_cells import joined_levels, limits_of
 from calibrate.exclusions import Excluded, excluded_of
 from calibrate.readings import Readings
-from calibrate.selection import Candidate
+from calibrate.selection import Candidate, judged_on_folds
 from calibrate.table import Table
 from calibrate.uncertainty import NORMAL_95, Intervals, limit_of
 from calibrate.verdict import Verdict, Word
@@ -321,38 +322,9 @@ def _by_error(one: Candidate) -> tuple[bool, float]:
 
 def _left_out(readings: Readings, angle: Floats, name: str) -> Candidate:
     """Return how a curve does on blocks of the sweep that it had not seen."""
-    try:
-        return _judged_curve(readings, angle, name)
-    except UnusableDataError as error:
-        return Candidate(name, refused=str(error))
-
-
-def _judged_curve(readings: Readings, angle: Floats, name: str) -> Candidate:
+    curve: Any = SimpleNamespace(for_sensor=lambda *_: AxisCurve(TARGETS[name]))
     fold = _folds(angle)
-    predicted = np.full((len(readings), 3), np.nan)
-    deviation = np.full(len(readings), np.nan)
-    rms = []
-    for number in range(_FOLDS):
-        out = fold == number
-        if not out.any():
-            continue
-        model = _fitted(readings.only(~out), TARGETS[name])
-        predicted[out] = model.predict(readings.features[out])
-        deviation[out] = model.deviation_deg(readings.features[out])
-        rms.append(_rms(_separation(predicted[out], readings.sun[out])))
-    errors = _separation(predicted, readings.sun)
-    judged = fold >= 0
-    folds = np.array([value for value in rms if np.isfinite(value)])
-    return Candidate(
-        name,
-        _rms(errors),
-        float(np.std(folds, ddof=1) / np.sqrt(len(folds))) if len(folds) > 1 else 0.0,
-        float(folds.max(initial=np.nan)) if len(folds) else float("nan"),
-        1.0 - float(np.isfinite(errors).sum() / max(judged.sum(), 1)),
-        errors=errors,
-        offsets=predicted - readings.sun,
-        deviation=deviation,
-    )
+    return judged_on_folds(name, curve, readings, SensorGeometry(), fold, fold >= 0)
 
 
 def _folds(angle: Floats) -> NDArray[np.int64]:
@@ -440,12 +412,6 @@ def _spread(readings: Readings, noise: float, target: Target) -> Floats:
         model = AxisCurve(target).fit(readings.features, sun)
         found.append(angles_in(model.predict(readings.features), start, across))
     return np.asarray(np.std(np.array(found), axis=0, ddof=1))
-
-
-def _separation(predicted: Floats, sun: Floats) -> Floats:
-    from algorithms.angles import separation_deg  # noqa: PLC0415 - one use
-
-    return separation_deg(predicted, sun)
 
 
 def _rms(errors: Floats) -> float:

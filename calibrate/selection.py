@@ -157,7 +157,7 @@ def compare(
     found = []
     for name, scored in models.items():
         tick(name)
-        found.append(_judged(name, scored, used, geometry, fold, judged))
+        found.append(judged_on_folds(name, scored, used, geometry, fold, judged))
     return sorted(found, key=lambda one: (bool(one.refused), one.rms_deg + _unanswered(one)))
 
 
@@ -293,7 +293,7 @@ def _inside(used: Readings, fold: NDArray[np.int64]) -> NDArray[np.bool_]:
     return judged
 
 
-def _judged(  # noqa: PLR0917 - what a comparison shares
+def judged_on_folds(  # noqa: PLR0917 - what a comparison shares
     name: str,
     scored: Scored,
     used: Readings,
@@ -301,6 +301,7 @@ def _judged(  # noqa: PLR0917 - what a comparison shares
     fold: NDArray[np.int64],
     judged: NDArray[np.bool_],
 ) -> Candidate:
+    """Return a model's errors on each fold's samples, of which some are judged, by the others."""
     predicted = np.full((len(used), 3), np.nan)
     deviation = np.full(len(used), np.nan)
     seconds, rms = [], []

@@ -19,17 +19,7 @@ Kind = Literal["spot", "balance", "pair", "quadrants", "electrodes", "channels",
 AngleForm = Literal[
     "projection", "alpha-inner", "beta-inner", "azimuth-elevation", "azimuth-zenith"
 ]
-Form = Literal[
-    "vector",
-    "projection",
-    "alpha-inner",
-    "beta-inner",
-    "azimuth-elevation",
-    "azimuth-zenith",
-    "one-angle",
-    "quaternion",
-    "matrix",
-]
+Form = Literal["vector", AngleForm, "one-angle", "quaternion", "matrix"]
 #: Columns of readings that each kind has; None: any number from three up.
 COLUMNS: dict[str, int | None] = {
     "spot": 2,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -26,7 +26,6 @@ LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
 _MOST_UNPACKED, _MOST_CELLS = 1024 * 1024 * 1024, 60_000_000
 #: Endings of the files that are read.
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".parquet", ".npz", ".npy", ".xlsx")
-_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc")
 
 
 @dataclass(frozen=True)
@@ -114,32 +113,28 @@ def read_table(path: Path, stated: FileSettings | None = None) -> Table:
     FileRefusedError
         If it is no regular file, or larger than 256 MiB.
     """
-    layout = stated or FileSettings()
-    readers: dict[str, Callable[[bytes, str], Table]] = {
-        **dict.fromkeys(
-            _TEXT,
-            lambda data, source: _of_cells(cells_of_text(data, source, layout, MOST_ROWS), source),
-        ),
-        ".parquet": _read_parquet,
-        ".npz": _read_numpy,
-        ".npy": _read_numpy,
-        ".xlsx": lambda data, source: _read_excel(data, source, layout),
-    }
     kind = path.suffix.lower()
-    if kind not in readers:
+    if kind not in SUFFIXES:
         raise TableError(
             f"{path.name}: expected a file of {', '.join(SUFFIXES)}; got {kind or 'none'}"
         )
     data = read_bytes(path, LARGEST)
     if not data:
         raise TableError(f"{path.name}: the file is empty")
-    table = readers[kind](data, path.name)
+    table = _read(data, path.name, kind, stated or FileSettings())
     if not len(table):
         raise TableError(f"{path.name}: there are no rows under the header")
     return table
 
 
-def _read_text(data: bytes, source: str, stated: FileSettings) -> Table:
+def _read(data: bytes, source: str, kind: str, stated: FileSettings) -> Table:
+    if kind == ".parquet":
+        return _read_parquet(data, source)
+    if kind in (".npz", ".npy"):
+        return _read_numpy(data, source)
+    if kind == ".xlsx":
+        _require_unpacked(data, source)
+        return _of_cells(cells_of_workbook(data, source, stated, MOST_ROWS), source)
     return _of_cells(cells_of_text(data, source, stated, MOST_ROWS), source)
 
 
@@ -251,11 +246,6 @@ def _read_parquet(data: bytes, source: str) -> Table:
     _require_names([str(name) for name in frame.columns], source)
     frame.columns = [str(name) for name in frame.columns]
     return _of_frame(frame, source)
-
-
-def _read_excel(data: bytes, source: str, stated: FileSettings) -> Table:
-    _require_unpacked(data, source)
-    return _of_cells(cells_of_workbook(data, source, stated, MOST_ROWS), source)
 
 
 def _read_numpy(data: bytes, source: str) -> Table:

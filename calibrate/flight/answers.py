@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from calibrate.calibration import Calibration
-from calibrate.intervals.grazing import Grazing
+from calibrate.places import Grazing
 from calibrate.uncertainty import Intervals
 
 
@@ -68,7 +68,7 @@ class Answers:
 
     `rings_deg` (K,) are off-axis angles of ring centres about `axis` (3,); sector m of M is at the
     azimuth 360 m / M about it, from +x towards +y. `sigma_deg` (K, M, 2) is of the two axes of
-    `calibrate.intervals.places.tangent_axes` and grows by `grazing` where light grazes a face.
+    `calibrate.places.tangent_axes` and grows by `grazing` where light grazes a face.
     `rotation` (3, 3) takes directions and their 1-sigma to those answered.
     """
 

@@ -13,7 +13,6 @@ from algorithms.contract import FeatureKind, Floats
 from calibrate.calibration import Calibration
 from calibrate.documents import SavedCalibration
 from calibrate.flight.answers import Answers, answers_at, answers_of
-from calibrate.flight.c_source import c_files
 from calibrate.flight.faces import faces_steps
 from calibrate.flight.plane import plane_steps
 from calibrate.flight.program import (
@@ -26,8 +25,8 @@ from calibrate.flight.program import (
     run,
     vectors_of,
 )
-from calibrate.flight.python_source import python_module
 from calibrate.flight.runtime import STATUSES
+from calibrate.flight.sources import c_files, python_module
 from calibrate.forms.units import KELVIN
 from calibrate.readings import MATRICES, Readings
 from calibrate.selection import deviation_of

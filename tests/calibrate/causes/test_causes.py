@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from samples import found_in, samples, table
 
-from calibrate.ambiguity import folded
 from calibrate.calibration import calibrate
 from calibrate.causes.bad_cells import without_bad_cells
 from calibrate.causes.kinks import largest_unnoticed
@@ -15,7 +14,7 @@ from calibrate.causes.lag import fraction_late
 from calibrate.causes.light import level_of_products, level_of_sum, without_stray
 from calibrate.causes.untested import untested_in
 from calibrate.conventions.findings import findings
-from calibrate.exclusions import FOLD, WRONG, Excluded, unexplained
+from calibrate.exclusions import FOLD, WRONG, Excluded, folded, unexplained
 from calibrate.halves import Halves
 from calibrate.readings import FALLING, quadrant_balances, readings_of
 from calibrate.robust import answer_noise_deg, residuals, robust_map

@@ -19,7 +19,7 @@ from calibrate.calibration import Calibration
 from calibrate.documents import SavedCalibration, document, load, of_document, with_correction
 from calibrate.flight.code import corrected_code, flight_code
 from calibrate.flight.program import NoCodeError, program_of, stored_program
-from calibrate.intervals.grazing import Grazing
+from calibrate.places import Grazing
 from calibrate.readings import Readings, readings_of
 from calibrate.recalibration import Correction, Errors
 from calibrate.table import Table

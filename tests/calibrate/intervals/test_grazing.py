@@ -16,7 +16,7 @@ from raw_sensors import SENSORS, compiled
 from calibrate.calibration import Calibration
 from calibrate.documents import load, save
 from calibrate.flight.code import flight_code
-from calibrate.intervals.grazing import Grazing
+from calibrate.places import Grazing
 from calibrate.uncertainty import NORMAL_95, Intervals, intervals, tangent_offsets
 
 NORMALS = np.vstack([one := bench.turn("x", 20.0) @ bench.turn("y", 35.0), -one])

@@ -8,7 +8,7 @@ import bench
 import numpy as np
 import pytest
 
-from calibrate.intervals.places import Grid, tangent_axes
+from calibrate.places import Grid, tangent_axes
 from calibrate.uncertainty import (
     NORMAL_95,
     Intervals,

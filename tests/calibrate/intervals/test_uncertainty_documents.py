@@ -14,7 +14,7 @@ from algorithms.calibration.documents import DIGEST, digest_of
 from algorithms.calibration.saving import UnreadableCalibrationError
 from calibrate.calibration import Calibration
 from calibrate.documents import document, load, save, with_correction
-from calibrate.intervals.places import tangent_axes
+from calibrate.places import tangent_axes
 from calibrate.recalibration import Correction, Errors
 
 FEATURES = bench.spots(bench.sun_of(np.random.default_rng(5).uniform(-40.0, 40.0, (60, 2))), 6)

@@ -1,1 +1,0 @@
-"""Errors of samples left out, and their scale by place."""
