@@ -52,6 +52,7 @@ from calibrate.uncertainty import (
     noise_around,
     noise_deg,
     refits,
+    rms,
     spread_deg,
     tangent_offsets,
 )
@@ -305,7 +306,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     thinned = readings.only(np.arange(0, len(readings), max(-(-len(readings) // MOST_FITTED), 1)))
     model = fitted(wanted[chosen.name], thinned, geometry)
     offsets = model.predict(readings.features, readings.context) - readings.sun
-    residual = _rms(separation_deg(offsets + readings.sun, readings.sun))
+    residual = rms(separation_deg(offsets + readings.sun, readings.sun))
     noise = noise_deg(offsets, readings.sun)
     tick("uncertainty")
     sample = readings.only(np.arange(0, len(readings), max(len(readings) // 2000, 1)))
@@ -378,8 +379,3 @@ def _fit_spread(
 def _step(readings: Readings, chosen: Candidate) -> int:
     count = len(np.asarray(chosen.offsets))
     return max(-(-len(readings) // count), 1)
-
-
-def _rms(errors: Floats) -> float:
-    known = errors[np.isfinite(errors)]
-    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")

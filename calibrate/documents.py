@@ -7,7 +7,7 @@ import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, cast
 
@@ -40,7 +40,7 @@ from calibrate.terms.corrections import (
     with_changes,
 )
 from calibrate.terms.temperature import TERMS
-from calibrate.uncertainty import Intervals, covariance_of
+from calibrate.uncertainty import Intervals, covariance_of, rms
 from calibrate.verdict import as_text
 from files.atomic import replace_file
 
@@ -65,36 +65,19 @@ _MISFITS = (
 class SavedCalibration:
     """A calibration read from its document.
 
-    Attributes
-    ----------
-    settings : Settings
-        By which readings become features.
-    compensations : tuple of Compensation
-    model : Model
-    factor : float
-        Of the model's stated 1-sigma, where there are no intervals.
-    intervals : Intervals or None
-        The 1-sigma by place; None of few samples and of a document of version 1.
-    temperature_K : tuple of two float, or None
-        Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
-    offset, gain : ndarray, shape (F,) or ()
-        Since a correction features are ``(f - offset) / gain``; see `calibrate.recalibration`.
-        Of quadrants and electrodes `settings` have it, whose readings are no features.
-    rotation : ndarray, shape (3, 3)
-        Of directions since then.
-    document : dict
-        All that it says.
+    Since a correction features (N, F) are ``(f - offset) / gain``, see `calibrate.recalibration`;
+    of quadrants and electrodes the settings have it, whose readings are no features.
     """
 
-    settings: Settings
+    settings: Settings  # by which readings become features
     compensations: tuple[Compensation, ...]
     model: Model
-    factor: float
-    intervals: Intervals | None
+    factor: float  # of the model's stated 1-sigma, where there are no intervals
+    intervals: Intervals | None  # None of few samples and of version 1
     temperature_K: tuple[float, float] | None  # noqa: N815 - the unit's symbol
-    offset: Floats
-    rotation: Floats
-    document: dict[str, Any]
+    offset: Floats  # (F,) or ()
+    rotation: Floats  # (3, 3), of directions since a correction
+    document: dict[str, Any]  # all that it says
     gain: Floats = field(default_factory=lambda: np.ones(()))
 
     @property
@@ -186,7 +169,7 @@ def document(
             "noise_deg": number(found.noise_deg),
             "intervals": None if found.intervals is None else stored_intervals(found.intervals),
             "temperature_K": _temperatures(found),
-            "fit_spread_deg": number(_rms(found.spread_deg)),
+            "fit_spread_deg": number(rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
         },
         "selection": selection_table(found),
@@ -213,7 +196,7 @@ def document(
 def versions() -> dict[str, str]:
     """Return the versions of what calibrates, by name."""
     names = ("sun-sensor-atlas", "numpy", "scipy")
-    return {**{name: _version(name) for name in names}, "python": sys.version.split()[0]}
+    return {**{name: version(name) for name in names}, "python": sys.version.split()[0]}
 
 
 def selection_table(found: Calibration) -> list[dict[str, Any]]:
@@ -354,18 +337,6 @@ def number(value: Any) -> Any:
     if isinstance(value, (float, np.floating)):
         return float(value) if np.isfinite(value) else None
     return value
-
-
-def _rms(values: Floats) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "unknown"
 
 
 def stored_intervals(found: Intervals | Grazing) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from calibrate.exclusions import Excluded, excluded_of
 from calibrate.readings import Readings
 from calibrate.selection import Candidate, judged_on_folds
 from calibrate.table import Table
-from calibrate.uncertainty import NORMAL_95, Intervals, limit_of
+from calibrate.uncertainty import NORMAL_95, Intervals, limit_of, rms
 from calibrate.verdict import Verdict, Word
 
 #: Blocks of neighbouring poses along the sweep, every fifth of which is left out together.
@@ -246,7 +246,7 @@ def calibrated_axis(readings: Readings, floor_deg: float) -> dict[str, Any]:
     target = TARGETS[candidate.name]
     model = _fitted(sound, target)
     left = angles_in(model.predict(sound.features), start, across) - angle
-    residual = _rms(left)
+    residual = rms(left)
     noise = _noise(left, angle)
     share = len(excluded) / len(readings)
     word, reason = _judged(candidate, residual, float(np.hypot(noise, floor_deg)), share)
@@ -412,8 +412,3 @@ def _spread(readings: Readings, noise: float, target: Target) -> Floats:
         model = AxisCurve(target).fit(readings.features, sun)
         found.append(angles_in(model.predict(readings.features), start, across))
     return np.asarray(np.std(np.array(found), axis=0, ddof=1))
-
-
-def _rms(errors: Floats) -> float:
-    known = errors[np.isfinite(errors)]
-    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")

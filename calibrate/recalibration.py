@@ -62,37 +62,20 @@ class Errors:
 class Correction:
     """What a sensor did since it was calibrated.
 
-    Attributes
-    ----------
-    kinds : tuple of {"gain", "scale", "offset", "boresight"}
-        That changed; none where nothing explains the poses better than the old calibration.
-    gain, offset : tuple of float
-        A reading, less dark over gain, is now ``gain`` times what it was, plus ``offset``.
-    rotation : tuple of three tuples of three float
-        That takes the old directions to the new ones.
-    before, after : Errors
-        Of the old calibration on the new poses, and of the corrected one on each pose while it was
-        left out.
-    changes : tuple of str
-        Each change with its 1-sigma, in words.
-    samples, unanswered : int
-        Poses that the old calibration answers, and that the corrected one does not.
-    stated_deg : float
-        RMS error of the old calibration by its own document; NaN where it states none.
-    errors_deg : ndarray, shape (N,)
-        Of each pose as in `after`; NaN where it is not answered.
+    A reading, less dark over gain, is now ``gain`` times what it was, plus ``offset``; `rotation`
+    takes the old directions to the new ones. `after` has each pose while it was left out.
     """
 
-    kinds: tuple[Kind, ...]
+    kinds: tuple[Kind, ...]  # that changed; none where nothing explains the poses better
     gain: tuple[float, ...]
     offset: tuple[float, ...]
     rotation: tuple[tuple[float, ...], ...]
-    before: Errors
+    before: Errors  # of the old calibration on the new poses
     after: Errors
-    changes: tuple[str, ...]
-    samples: int
-    unanswered: int = 0
-    stated_deg: float = float("nan")
+    changes: tuple[str, ...]  # each with its 1-sigma, in words
+    samples: int  # poses that the old calibration answers
+    unanswered: int = 0  # poses that the corrected one does not answer
+    stated_deg: float = float("nan")  # by its own document; NaN where it states none
     errors_deg: Floats = field(default_factory=lambda: np.zeros(0), repr=False, compare=False)
 
     @property

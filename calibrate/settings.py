@@ -275,13 +275,22 @@ class CertificateSettings(_Strict):
 class Settings(_Strict):
     """All that is said of a calibration file."""
 
-    file: FileSettings = FileSettings()
-    readings: ReadingsSettings
-    direction: DirectionSettings
-    rows: RowSettings = RowSettings()
-    bench: BenchSettings = BenchSettings()
-    sensor: SensorSettings = SensorSettings()
-    certificate: CertificateSettings = CertificateSettings()
+    file: FileSettings = Field(
+        default=FileSettings(), description="How the file is laid out; what is missing is found."
+    )
+    readings: ReadingsSettings = Field(description="What the sensor read.")
+    direction: DirectionSettings = Field(description="Where the light was.")
+    rows: RowSettings = Field(default=RowSettings(), description="What else is known of each row.")
+    bench: BenchSettings = Field(default=BenchSettings(), description="The bench.")
+    sensor: SensorSettings = Field(
+        default=SensorSettings(),
+        description="The drawing, as far as it is known; what is missing is estimated from the "
+        "readings.",
+    )
+    certificate: CertificateSettings = Field(
+        default=CertificateSettings(),
+        description="Who calibrated what for whom, for --certificate.",
+    )
     apply: tuple[Transform, ...] = Field(
         default=(),
         description="Changes of the readings' axes, in order, before anything is fitted.",

@@ -32,36 +32,19 @@ SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".parquet", ".npz", ".npy", 
 class Table:
     """Columns of a file.
 
-    Parameters
-    ----------
-    columns : mapping of str to ndarray
-        Float columns (n,), or text columns (n,) where a cell is not a number. Angles of degrees,
-        minutes and seconds are degrees; dates are seconds since 1970.
-    first_row : int
-        Number of the first row of data as counted in the file; the header is row 1.
-    source : str
-        Name of the file.
-    unread : mapping of str to (int, str)
-        Of text columns the first row that is not a number, and what stands there.
-    units : mapping of str to str
-        Of columns whose name, cells or row of units say one, as `calibrate.forms.units` spells
-        them; ``unix`` of dates.
-    notes : tuple of str
-        How the file was read, in sentences without an end.
-    row_numbers : ndarray of int, shape (n,), optional
-        Of each row of data in the file, where rows between them were left out.
-    header_row : int
-        Row of the names in the file, 0 where there is none.
+    Float columns (n,), or text columns (n,) where a cell is not a number. Angles of degrees,
+    minutes and seconds are degrees; dates are seconds since 1970. Units are those that a name,
+    cells or a row say, as `calibrate.forms.units` spells them; ``unix`` of dates.
     """
 
     columns: Mapping[str, NDArray[np.generic]]
-    first_row: int
-    source: str
-    unread: Mapping[str, tuple[int, str]]
+    first_row: int  # of data, as counted in the file; the header is row 1
+    source: str  # name of the file
+    unread: Mapping[str, tuple[int, str]]  # of text: first row that is no number, and its cell
     units: Mapping[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    row_numbers: NDArray[np.int64] | None = None
-    header_row: int = 1
+    notes: tuple[str, ...] = ()  # how the file was read, without an end
+    row_numbers: NDArray[np.int64] | None = None  # (n,), where rows between were left out
+    header_row: int = 1  # in the file, 0 where there is none
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """Return a column of numbers; TableError naming row and column otherwise."""

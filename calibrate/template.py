@@ -3,67 +3,26 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
-
 from calibrate.forms.units import named
 from calibrate.roles import Understood, by_order, understood
-from calibrate.settings import (
-    BenchSettings,
-    CertificateSettings,
-    DirectionSettings,
-    FileSettings,
-    ReadingsSettings,
-    RowSettings,
-    SensorSettings,
-    Settings,
-)
+from calibrate.settings import Settings
 from calibrate.table import Table, TableError, read_table
 
-_TITLES = {
-    "file": "How the file is laid out; what is missing is found.",
-    "readings": "What the sensor read.",
-    "direction": "Where the light was.",
-    "rows": "What else is known of each row.",
-    "bench": "The bench.",
-    "sensor": "The drawing, as far as it is known; what is missing is estimated from the readings.",
-    "certificate": "Who calibrated what for whom, for --certificate.",
-}
 #: Rows that a preview shows, and first values that a template does.
 PREVIEWED, _FIRST = 5, 3
-_PARTS: dict[str, type[BaseModel]] = {
-    "file": FileSettings,
-    "readings": ReadingsSettings,
-    "direction": DirectionSettings,
-    "rows": RowSettings,
-    "bench": BenchSettings,
-    "sensor": SensorSettings,
-    "certificate": CertificateSettings,
-}
 
 
 def preview(path: Path) -> dict[str, Any]:
     """Return what a file seems to hold, as plain data, for a reader to check.
 
-    Parameters
-    ----------
-    path : Path
-        As `calibrate.table.read_table` takes it.
-
-    Returns
-    -------
-    dict
-        ``source``, ``rows`` (how many), ``columns`` (a list of ``name``, ``role``, ``unit`` and
-        ``first``, the first five values as text; role and unit are None where not known),
-        ``notes`` (sentences on how the file was read), ``refused`` (why nothing was recognised;
-        empty where it was) and ``config`` (the text that ``--init`` writes).
-
-    Raises
-    ------
-    TableError
-        If the file is no table.
+    ``source``, ``rows`` (how many), ``columns`` (a list of ``name``, ``role``, ``unit`` and
+    ``first``, the first five values as text; role and unit are None where not known), ``notes``
+    (sentences on how the file was read), ``refused`` (why nothing was recognised; empty where it
+    was) and ``config`` (the text that ``--init`` writes). TableError if the file is no table.
     """
     table = read_table(path)
     found, why = _understood(table)
@@ -133,10 +92,12 @@ def template(settings: Settings) -> str:
         "# rotate-90, rotate-180, rotate-270, swap-negated-xy.",
         f"apply = {_value(settings.apply)}",
     ]
-    for name, kind in _PARTS.items():
+    for name, section in Settings.model_fields.items():
         values = getattr(settings, name)
-        lines += ["", f"# {_TITLES[name]}", f"[{name}]"]
-        for field, about in kind.model_fields.items():
+        if name == "apply":
+            continue
+        lines += ["", f"# {section.description}", f"[{name}]"]
+        for field, about in type(values).model_fields.items():
             if about.description:
                 lines += [f"# {part}" for part in _wrapped(about.description)]
             value = getattr(values, field)
@@ -180,6 +141,4 @@ def _value(value: object) -> str:
 
 
 def _wrapped(text: str) -> list[str]:
-    import textwrap  # noqa: PLC0415 - one use
-
     return textwrap.wrap(text, 96, break_on_hyphens=False, break_long_words=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,36 +41,20 @@ _SEED = 20_260_101
 class Intervals:
     """The 1-sigma of a direction by its place, so that 95 % intervals hold 95 % everywhere.
 
-    Attributes
-    ----------
-    factor : float
-        95 % quantile of errors over their local scale (that of normal errors is 1), from samples
-        that told nothing of the scale; part of `sigma_deg` already.
-    coverage : float
-        Share of samples left out within the 95 % interval, by a table of other samples.
-    samples : int
-        Of them.
-    axis : ndarray, shape (3,)
-        Unit vector that rings lie about.
-    rings_deg : ndarray, shape (K,)
-        Off-axis angles of the ring centres, from 0.
-    sectors : int
-        Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
-    sigma_deg : ndarray, shape (K, M, 2)
-        Half width of the 95 % interval over 1.96, of the two axes of `tangent_axes`. In the first
-        ring, a point, all sectors are the same.
-    grazing : Grazing
-        By how much it grows where light grazes a face.
+    `factor`, part of `sigma_deg` already, is the 95 % quantile of errors over their local scale
+    (that of normal errors is 1), from samples that told nothing of the scale. Sector m of M is at
+    the azimuth 360 m / M about the axis, from +x towards +y. In the first ring, a point, all
+    sectors are the same.
     """
 
     factor: float
-    coverage: float
-    samples: int
-    axis: Floats
-    rings_deg: Floats
-    sectors: int
-    sigma_deg: Floats
-    grazing: Grazing = field(default_factory=Grazing.none)
+    coverage: float  # share of samples left out within, by a table of others
+    samples: int  # left out
+    axis: Floats  # (3,), that rings lie about
+    rings_deg: Floats  # (K,), off-axis angles of the ring centres, from 0
+    sectors: int  # of each ring
+    sigma_deg: Floats  # (K, M, 2), half of the 95 % interval over 1.96
+    grazing: Grazing = field(default_factory=Grazing.none)  # growth where light grazes a face
 
     def at(self, sun: Floats) -> Floats:
         """Return the 1-sigma (N, 2) of two tangent axes at directions (N, 3), degrees.
@@ -204,6 +188,12 @@ def _middle(square: Floats) -> float:
     return float(kept.mean())
 
 
+def rms(errors: Floats) -> float:
+    """Return the root mean square of the finite ones of errors; NaN of none."""
+    known = errors[np.isfinite(errors)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
+
+
 def refits(  # noqa: PLR0917 - what a fit is made of
     scored: Scored,
     readings: Readings,
@@ -226,7 +216,7 @@ def refits(  # noqa: PLR0917 - what a fit is made of
         )
         turned /= np.linalg.norm(turned, axis=1)[:, None]
         try:
-            model = fitted(scored, _with_sun(readings, turned), geometry)
+            model = fitted(scored, replace(readings, sun=turned), geometry)
             found.append(model.predict(at.features, at.context))
         except UnusableDataError as error:
             refusal = error
@@ -243,12 +233,6 @@ def spread_deg(directions: Floats) -> Floats:
     about = directions - directions.mean(axis=0)
     square = (about**2).sum(axis=2).sum(axis=0) / (len(directions) - 1)
     return np.asarray(np.degrees(np.sqrt(square)))
-
-
-def _with_sun(readings: Readings, sun: Floats) -> Readings:
-    from dataclasses import replace  # noqa: PLC0415 - one use
-
-    return replace(readings, sun=sun)
 
 
 #: Parts of the rim that are left out one after the other.

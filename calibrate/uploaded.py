@@ -34,16 +34,9 @@ class UploadRefusedError(ValueError):
 
 @dataclass(frozen=True)
 class Upload:
-    """A file as it was sent.
+    """A file as it was sent."""
 
-    Attributes
-    ----------
-    name : str
-        As the sender calls it.
-    data : bytes
-    """
-
-    name: str
+    name: str  # as the sender calls it
     data: bytes
 
 
@@ -86,10 +79,7 @@ def calibrate_uploads(
 def preview_uploads(uploads: Sequence[Upload], longest_s: float | None = None) -> dict[str, Any]:
     """Return what the first file seems to hold, as `calibrate.template.preview` says it.
 
-    Raises
-    ------
-    UploadRefusedError
-        If the files are too large, or the first is no table.
+    UploadRefusedError if the files are too large, or the first is no table.
     """
     found: dict[str, Any] = _answered(uploads, {"config": "", "preview": True}, longest_s)
     return found

@@ -59,19 +59,9 @@ class TemperatureTerms(_LinearInTemperature):
 
     The simplest of four forms that explains them is taken (Bayes's criterion): a shift, a shift
     with one scale, with a scale an axis, and with any linear map. A scale with a shift is a scale
-    about a centre.
+    about a centre. `slope_` (2, 2) and `shift_` (2,) are the changes a kelvin that are taken back,
+    relative and as they are, from `reference_k_`, the calibration's mean temperature.
 
-    Attributes
-    ----------
-    slope_ : ndarray, shape (2, 2)
-        Relative change a kelvin that is taken back.
-    shift_ : ndarray, shape (2,)
-        Change a kelvin that is taken back.
-    reference_k_ : float
-        Mean temperature of the calibration.
-
-    Notes
-    -----
     What readings would be at one temperature is a polynomial of the direction, up to the fifth
     degree, of its tangents or of its cosines, whichever leaves less; fitted with the terms by least
     squares. So the terms do not depend on the model behind.
@@ -125,24 +115,9 @@ class TemperatureTerms(_LinearInTemperature):
 class TemperatureGains(_LinearInTemperature):
     """Signals of photodiodes or solar cells converted to one temperature.
 
-    A gain, an offset, both or none a channel, the simplest that explains it (Bayes's criterion).
+    A gain, an offset, both or none for each of the channels, the simplest that explains it (Bayes's
+    criterion). `slope_` (K, K), diagonal, and `shift_` (K,) are as those of `TemperatureTerms`.
 
-    Parameters
-    ----------
-    channels : int
-        Signals of a sample.
-
-    Attributes
-    ----------
-    slope_ : ndarray, shape (K, K)
-        Diagonal: relative change a kelvin that is taken back.
-    shift_ : ndarray, shape (K,)
-        Change a kelvin that is taken back.
-    reference_k_ : float
-        Mean temperature of the calibration.
-
-    Notes
-    -----
     What a lit channel reads at one temperature is a cubic of the direction, fitted with its terms
     by least squares over the samples that give it a fifth of its most light or more. It is told
     apart from `TemperatureDrift` by needing no drawing and by its offsets.
