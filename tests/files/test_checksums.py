@@ -91,6 +91,13 @@ def test_what_a_kill_leaves_is_no_change_by_hand_and_the_next_run_ends_it(
     assert sorted(p.name for p in folder.rglob("*")) == [FILE, "inner", "new.json", "table.csv"]
 
 
+def test_a_damaged_coming_list_does_not_undo_what_a_command_writes(folder: Path) -> None:
+    (folder / NEXT).write_text("half of it")
+    assert write_recorded(folder, CHANGED)
+    assert not (folder / NEXT).exists()
+    assert differences(folder, ("table.csv", "inner/new.json")) == []
+
+
 def test_files_that_change_together_are_replaced_as_a_folder(folder: Path) -> None:
     before = (folder / "inner").stat().st_ino
     assert not write_recorded(folder, {"inner/said.json": "1\n"}, together="inner")

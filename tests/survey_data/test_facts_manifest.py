@@ -10,6 +10,7 @@ import pytest
 from survey_data import facts_manifest
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.problems import SurveyDataError
+from survey_data.table_records import read_records
 
 
 @pytest.fixture
@@ -17,6 +18,44 @@ def tables(tmp_path: Path) -> Path:
     copied = tmp_path / "tables"
     shutil.copytree(DATA_DIRECTORY, copied, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     return copied
+
+
+def test_a_changed_letter_and_a_cut_in_the_facts_are_refused(tables: Path) -> None:
+    path = tables / "studies.csv"
+    right = path.read_bytes()
+    for wrong in (right.replace(b"sensor", b"sensos", 1), right[:-1]):
+        path.write_bytes(wrong)
+        with pytest.raises(SurveyDataError, match=r"studies\.csv: .*; restore it"):
+            facts_manifest.require_unchanged(tables)
+    path.write_bytes(right)
+    facts_manifest.require_unchanged(tables)
+
+
+def test_facts_that_are_not_valid_are_not_taken_over(tables: Path) -> None:
+    path = tables / "studies.csv"
+    text = path.read_text()
+    path.write_text(text + text.splitlines()[1] + "\n")
+    with pytest.raises(SurveyDataError, match="duplicate"):
+        facts_manifest.renew(tables)
+    assert facts_manifest.changes(tables) != []
+
+
+@pytest.mark.parametrize(
+    ("data", "row", "column", "said"),
+    [
+        (b"a,b\n1,2\n3,4", 3, "b", "the last line is cut off"),
+        (b"a,b\n1," + b"x" * 5001 + b"\n", 2, "b", "longer than 5000 characters"),
+        (b"a,b\n 1,2\n", 2, "a", "space around the value ' 1'"),
+    ],
+)
+def test_damage_of_a_table_is_located(
+    data: bytes, row: int, column: str, said: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "given.csv"
+    path.write_bytes(data)
+    (problem,) = read_records(path, ["a", "b"]).problems
+    assert (problem.file, problem.row, problem.column) == ("given.csv", row, column)
+    assert said in problem.message
 
 
 def test_a_change_by_hand_is_named_and_taken_over(
