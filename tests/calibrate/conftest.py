@@ -1,4 +1,4 @@
-"""Puts `bench`, which makes the files, where these tests find it; a camera that many calibrate."""
+"""Puts modules that make files and sensors where tests find them; a camera that many calibrate."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parent))
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), *(str(HERE / part) for part in ("causes", "flight", "intervals"))]
 
 
 @pytest.fixture(scope="session")

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from bench import CENTRE, HEADER, angles_of, grid, quadrants, spots, sun_of, turn, write
+from bench import CENTRE, HEADER, angles_of, grid, quadrants, spots, sun_of, write
 
 from algorithms.angles import separation_deg
 from algorithms.contract import UnusableDataError
 from api.cli.commands.calibrate import app
 from calibrate.calibration import calibrate
 from calibrate.documents import load, save
-from calibrate.products import write_products
 from calibrate.table import TableError, read_table
 
 SHARED = Path(__file__).parents[3] / "shared"
@@ -30,14 +25,6 @@ def bench_file(path: Path, angles=ANGLES, seed: int = 1) -> Path:
     return write(path, HEADER, spots(sun_of(angles), seed), angles)
 
 
-@pytest.fixture(scope="module")
-def written(camera, tmp_path_factory):
-    """Directory of its files."""
-    directory = tmp_path_factory.mktemp("written")
-    write_products(camera, directory, "cam")
-    return directory
-
-
 def test_the_model_that_made_the_file_is_chosen_and_nothing_left_out(camera):
     assert camera.chosen.name == "homography"
     assert camera.verdict.word == "good"
@@ -45,17 +32,6 @@ def test_the_model_that_made_the_file_is_chosen_and_nothing_left_out(camera):
     assert camera.findings == ()
     # 0.05 px an axis at 350 px of focal length, foreshortened away from the middle
     assert 0.005 < camera.chosen.rms_deg < 0.0116
-
-
-def test_95_percent_intervals_hold_on_poses_and_noise_nobody_saw(camera):
-    fresh = sun_of(np.random.default_rng(9).uniform(-45, 45, (4000, 2)))
-    features = spots(fresh, 77)
-    sigma = camera.deviation_deg(features)
-    predicted = camera.model.predict(features)
-    first = np.cross(fresh, [0.0, 1.0, 0.0])
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    along = np.degrees(np.abs(((predicted - fresh) * first).sum(axis=1)))
-    assert 0.93 <= np.mean(along <= 1.96 * sigma) <= 0.97
 
 
 def test_wrong_poses_are_listed_and_cost_nothing(camera, tmp_path):
@@ -76,20 +52,6 @@ def test_wrong_poses_are_listed_and_cost_nothing(camera, tmp_path):
     assert np.sqrt(np.mean(clean[both] ** 2)) <= 1.05 * np.sqrt(np.mean(before[both] ** 2))
 
 
-@pytest.mark.slow
-def test_a_run_off_by_a_constant_is_left_out(tmp_path):
-    files = []
-    for number in range(4):
-        angles = grid(13)
-        sun = sun_of(angles)
-        stated = angles_of(sun @ turn("x", 3.0).T) if number == 2 else angles
-        path = tmp_path / f"run{number}.csv"
-        files.append(write(path, HEADER, spots(sun, 10 + number), stated))
-    found = calibrate(files, models=("homography",))
-    assert [(one.run, round(one.offset_deg, 1)) for one in found.off_runs] == [(2, 3.0)]
-    assert found.chosen.rms_deg < 0.0116
-
-
 def test_what_lies_beyond_a_fold_is_left_out(tmp_path):
     angles = grid(35, 60.0)
     header = ["q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg"]
@@ -100,6 +62,14 @@ def test_what_lies_beyond_a_fold_is_left_out(tmp_path):
     assert inside.max() < 0.8
     assert found.fold_deg is not None
     assert found.chosen.rms_deg < 0.3
+
+
+def test_a_cross_of_two_sweeps_misses_poses(tmp_path):
+    line = np.linspace(-50.0, 50.0, 80)
+    angles = np.vstack([np.column_stack([line, 0 * line]), np.column_stack([0 * line, line])])
+    found = calibrate([bench_file(tmp_path / "cross.csv", angles)], models=MODELS)
+    assert found.verdict.word == "poses missing"
+    assert found.fold_deg is None
 
 
 def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(tmp_path):
@@ -139,42 +109,6 @@ def test_a_saved_calibration_answers_the_same_bits(camera, tmp_path):
     (tmp_path / "other.json").write_text(text.replace('"samples": 441', '"samples": 442'))
     with pytest.raises(ValueError, match="changed after it was saved"):
         load(tmp_path / "other.json")
-
-
-def test_python_without_the_package_answers_what_the_model_does(camera, written):
-    said = (
-        "import cam, json\n"
-        "print(json.dumps(cam.sun([[512.0, 512.0], [700.5, 300.25], [5.0, 5.0]]).tolist()))"
-    )
-    run = subprocess.run(
-        [sys.executable, "-I", "-c", f"import sys; sys.path.insert(0, {str(written)!r})\n{said}"],
-        check=True, capture_output=True, text=True,
-    )  # fmt: skip
-    answered = np.array(json.loads(run.stdout.replace("NaN", "null")), dtype=float)
-    exact = camera.model.predict([[512.0, 512.0], [700.5, 300.25], [5.0, 5.0]])
-    assert np.isnan(answered[2]).all()
-    assert np.isnan(exact[2]).all()
-    assert np.max(separation_deg(answered[:2], exact[:2])) < 1e-3
-
-
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
-def test_the_c_code_passes_its_own_test_without_a_warning(camera, written):
-    flags = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-O2", "-fsanitize=undefined,address"]
-    command = ["gcc", "-std=c99", *flags]
-    files = ["-DCAM_SELFTEST", "cam.c", "cam_selftest.c", "-o", "selftest", "-lm"]
-    subprocess.run([*command, *files], cwd=written, check=True)
-    run = subprocess.run(["./selftest"], cwd=written, check=False, capture_output=True, text=True)
-    assert run.returncode == 0, run.stdout
-    example = ["cam.c", "cam_example.c", "-o", "example", "-lm"]
-    subprocess.run([*command, *example], cwd=written, check=True)
-    output = subprocess.run(
-        ["./example"], cwd=written, check=True, capture_output=True, text=True,
-        input="512 512\n700.5 300.25\n5 5\n1e30 nan\n",
-    ).stdout.splitlines()  # fmt: skip
-    directions = np.array([line.split()[1:4] for line in output[:2]], dtype=float)
-    exact = camera.model.predict([[512.0, 512.0], [700.5, 300.25]])
-    assert np.max(separation_deg(directions, exact)) < 1e-3
-    assert [line.split()[0] for line in output] == ["0", "0", "6", "1"]
 
 
 def test_the_command_writes_report_and_code_and_a_template(tmp_path, monkeypatch, capsys):

@@ -7,7 +7,6 @@ import shutil
 import subprocess
 
 import bench
-import mistakes
 import numpy as np
 import pytest
 
@@ -23,7 +22,10 @@ FLAGS = ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic"]
 def made(tmp_path_factory):
     """A calibration of a box of cells, and its files."""
     directory = tmp_path_factory.mktemp("box")
-    found = calibrate(mistakes.on_sphere(directory / "box.csv", 0).paths, models=("trig", "basic"))
+    sun = bench.sphere(600, 500)
+    names = ["xp", "xm", "yp", "ym", "zp", "zm", "sun_x", "sun_y", "sun_z"]
+    path = bench.write(directory / "box.csv", names, bench.faces(sun, 0), sun)
+    found = calibrate([path], models=("trig", "basic"))
     write_products(found, directory / "out", "box")
     return found, directory / "out"
 

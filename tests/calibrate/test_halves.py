@@ -1,13 +1,17 @@
-"""Fits to two halves of the samples: chance is no misfit, and a wrong model is one."""
+"""Fits to two halves: chance is no misfit, a wrong model is one, and unlike fields tell nothing."""
 
 from __future__ import annotations
 
 import bench
 import numpy as np
 import pytest
+from samples import samples
 
+from algorithms.contract import SensorGeometry
+from algorithms.discovery import discover_models
 from calibrate.calibration import calibrate
-from calibrate.halves import _traces
+from calibrate.halves import Halves, _traces, halves
+from calibrate.readings import Readings
 
 NAMES = ["x_plus", "x_minus", "y_plus", "y_minus", "theta_x_deg", "theta_y_deg"]
 
@@ -43,3 +47,45 @@ def test_traces_of_few_refits_are_those_of_the_covariance(scales):
         found.append(_traces(*(part - part.mean(axis=0) for part in parts)))
     expected = ((2 * variance.sum()) ** 2, 4 * (variance**2).sum())
     assert np.mean(found, axis=0) == pytest.approx(expected, rel=0.15)
+
+
+CAMERA = SensorGeometry(focal_length_mm=3.5, pixel_pitch_mm=0.01, centre_px=(512.0, 512.0))
+GRID = bench.grid(6, 8.0)
+
+
+def camera(angles: np.ndarray, run: np.ndarray | None = None) -> Readings:
+    sun = bench.sun_of(angles)
+    return samples(bench.spots(sun, 1), sun, run=run)
+
+
+def runs(*places: tuple[float, float]) -> Readings:
+    """A run of 36 poses around each place."""
+    angles = np.vstack([GRID + np.asarray(place) for place in places])
+    return camera(angles, np.repeat(np.arange(len(places)), 36))
+
+
+def compared(used: Readings, noise: float = 0.01) -> Halves:
+    return halves(discover_models()["homography"], used, CAMERA, np.full(len(used), noise))
+
+
+def test_three_runs_of_one_field_are_halved_by_runs_and_compared() -> None:
+    found = compared(runs((0.0, 0.0), (0.3, 0.3), (-0.3, -0.3)))
+    assert 0.2 < found.ratio < 2.0
+    assert found.chance > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("used", "noise"),
+    [
+        pytest.param(camera(GRID), 0.0, id="readings without noise"),
+        pytest.param(camera(GRID), np.nan, id="noise not known"),
+        pytest.param(camera(GRID[:6]), 0.01, id="poses of a half along a line"),
+        pytest.param(
+            runs((30.0, 0.0), (-20.0, 25.0), (-20.0, -25.0)), 0.01, id="runs of fields apart"
+        ),
+    ],
+)
+def test_what_is_not_known_is_said_to_be_no_misfit(used: Readings, noise: float) -> None:
+    found = compared(used, noise)
+    assert np.isnan(found.ratio)
+    assert found.chance == 1.0

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bench import CENTRE, HEADER, grid, quadrants, spots, sun_of, write
+from bench import (
+    CENTRE,
+    HEADER,
+    balances,
+    electrodes,
+    grid,
+    quadrants,
+    spots,
+    sun_of,
+    write,
+)
 
 from calibrate.conventions.finding import change_of
 from calibrate.conventions.findings import findings
@@ -86,14 +96,39 @@ def _ordered(features, run, order):
     return np.where((run == 1)[:, None], mirrored, clean), angles, run.astype(float)
 
 
-def test_quadrants_in_another_order_and_falling_readings_are_found(tmp_path):
-    angles = grid(25, 30.0)
-    light = quadrants(sun_of(angles), 2)
-    header = ["q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg"]
-    swapped, _, _ = found_in(write(tmp_path / "a.csv", header, light[:, [0, 2, 1, 3]], angles))
-    assert swapped[0].about == "quadrants"
-    assert swapped[0].certain
-    falling, _, _ = found_in(write(tmp_path / "b.csv", header, 5.0 - light, angles))
-    assert any(one.about == "light" for one in falling)
-    sound, _, _ = found_in(write(tmp_path / "c.csv", header, light, angles))
-    assert [one for one in sound if one.certain] == []
+NARROW = sun_of(grid(21, 30.0))
+WIDE = sun_of(grid(21, 55.0))
+FOUR = ["q1", "q2", "q3", "q4"]
+PAIRS = ["x_plus", "x_minus", "y_plus", "y_minus"]
+QUADRANTS, ELECTRODES = quadrants(NARROW, 1), electrodes(WIDE, 1)
+
+
+@pytest.mark.parametrize(
+    ("names", "readings", "angles", "said"),
+    [
+        (FOUR, QUADRANTS[:, [1, 0, 3, 2]], grid(21, 30.0), "after mirror-x"),
+        (FOUR, QUADRANTS, np.radians(grid(21, 30.0)), "seem to be radians"),
+        (FOUR, QUADRANTS[:, [0, 2, 1, 3]], grid(21, 30.0), "in the order q1, q3, q2, q4"),
+        (PAIRS, ELECTRODES[:, [1, 0, 3, 2]], grid(21, 55.0), "after rotate-180"),
+        (
+            ["balance_x", "balance_y"],
+            balances(WIDE, 1)[:, ::-1],
+            grid(21, 55.0),
+            "after swap-xy",
+        ),
+    ],
+    ids=["mirrored", "radians", "quadrant order", "inverted", "swapped"],
+)
+def test_conventions_of_other_sensors_are_found(names, readings, angles, said, tmp_path):
+    path = write(tmp_path / "bench.csv", [*names, "theta_x_deg", "theta_y_deg"], readings, angles)
+    found, _, _ = found_in(path)
+    assert [said in one.found for one in found if one.certain] == [True]
+
+
+@pytest.mark.parametrize(
+    ("names", "readings", "half"), [(FOUR, QUADRANTS, 30.0), (PAIRS, ELECTRODES, 55.0)]
+)
+def test_nothing_is_found_of_sound_light(names, readings, half, tmp_path):
+    header = [*names, "theta_x_deg", "theta_y_deg"]
+    found, _, _ = found_in(write(tmp_path / "bench.csv", header, readings, grid(21, half)))
+    assert [one for one in found if one.certain] == []

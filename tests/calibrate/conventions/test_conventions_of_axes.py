@@ -16,15 +16,6 @@ SUN = bench.sun_of(ANGLES)
 SPOTS = bench.spots(SUN, 1)
 
 
-def test_radians_named_as_degrees_are_found() -> None:
-    first = found_in(spot_table(SPOTS, np.radians(ANGLES), ""))[0]
-    assert (first.about, first.change, first.certain) == (
-        "unit",
-        {"direction": {"unit": "rad"}},
-        True,
-    )
-
-
 def test_degrees_of_a_field_of_three_degrees_are_no_radians() -> None:
     sun = bench.sun_of(ANGLES / 40.0)
     spots = bench.CENTRE + 9000.0 * sun[:, :2] / sun[:, 2:]

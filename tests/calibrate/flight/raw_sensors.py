@@ -5,6 +5,7 @@ Dark, inversion, order, formula and turns are written out again: nothing here is
 
 from __future__ import annotations
 
+import importlib.util
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -18,6 +19,7 @@ from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_chains
 from calibrate.calibration import Calibration
 from calibrate.causes.bad_cells import limits_of
+from calibrate.flight.code import FlightCode
 from calibrate.readings import Readings
 from calibrate.selection import Candidate, fitted, geometry_of
 from calibrate.settings import parse_settings
@@ -246,3 +248,34 @@ def compiled(directory: Path, *command: str, **known: Any) -> str:
     assert run.returncode == 0, run.stdout + run.stderr
     assert not run.stderr
     return run.stdout
+
+
+FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic")
+CHECKED = ("-fsanitize=undefined,address", "-fno-sanitize-recover=all")
+
+
+def written(code: FlightCode, directory: Path, digest: str = "0" * 32) -> Path:
+    """Write the files of code by the name ``ss``."""
+    for name, text in code.files("ss", {"Model": "test"}, digest).items():
+        (directory / name).write_text(text)
+    return directory
+
+
+def module_of(directory: Path) -> Any:
+    """Import the Python module of written code."""
+    spec = importlib.util.spec_from_file_location("ss", directory / "ss.py")
+    assert spec
+    assert spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def c_answers(directory: Path, rows: np.ndarray, flags: tuple[str, ...] = CHECKED) -> np.ndarray:
+    """Status, direction, angles and 1-sigma (N, 8) of rows, by the compiled example."""
+    if not (directory / "example").exists():
+        files = ("ss.c", "ss_example.c", "-o", "example", "-lm")
+        compiled(directory, "gcc", *FLAGS, *flags, *files)
+    text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in rows)
+    lines = compiled(directory, "./example", input=text).splitlines()
+    return np.array([line.split() for line in lines], dtype=float)

@@ -8,12 +8,11 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from raw_sensors import OTHERS, SENSORS, compiled
+from raw_sensors import OTHERS, SENSORS, c_answers, compiled, module_of, written
 
 from calibrate.causes.bad_cells import ReadingLimits
 from calibrate.flight.code import flight_code
@@ -22,12 +21,6 @@ from calibrate.flight.program import run
 from calibrate.uncertainty import Intervals
 
 DIGEST = "0123456789abcdef0123456789abcdef"
-
-
-def answers_of(text: str) -> Any:
-    names: dict[str, Any] = {"__name__": "ss"}
-    exec(text, names)
-    return SimpleNamespace(**names)
 
 
 @pytest.mark.parametrize("rounded", [0.0, 5e-7])
@@ -61,10 +54,8 @@ def test_one_sigma_is_bilinear_between_rings_and_sectors(
     rings = np.array([0.0, 30.0, 90.0, 180.0])
     known = Intervals(1.0, 0.95, 400, np.array(axis), rings, 8, table)
     found = replace(sensor.calibrated(camera), intervals=known)
-    code = flight_code(found)
-    for name, text in code.files("ss", {}, DIGEST).items():
-        (tmp_path / name).write_text(text)
-    made = answers_of((tmp_path / "ss.py").read_text()).solve(sensor.raw(3))
+    written(flight_code(found), tmp_path)
+    made = module_of(tmp_path).solve(sensor.raw(3))
     good = made["status"] == 0
     # the same by SciPy, over angles off the axis and azimuths that close
     from scipy.interpolate import RegularGridInterpolator
@@ -78,10 +69,7 @@ def test_one_sigma_is_bilinear_between_rings_and_sectors(
     off = np.degrees(np.arccos(np.clip(sun @ z, -1.0, 1.0)))
     azimuth = np.degrees(np.arctan2(sun @ np.cross(z, x), sun @ x)) % 360.0
     assert np.allclose(made["sigma_deg"][good], places((off, azimuth)), rtol=0, atol=1e-6)
-    compiled(tmp_path, "gcc", "-std=c99", "ss.c", "ss_example.c", "-o", "example", "-lm")
-    text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in sensor.raw(3))
-    lines = compiled(tmp_path, "./example", input=text).splitlines()
-    c = np.array([line.split() for line in lines], dtype=float)
+    c = c_answers(tmp_path, sensor.raw(3), ())
     assert np.allclose(c[good, 6:8], places((off, azimuth)), rtol=0, atol=2e-6)
 
 
@@ -197,8 +185,7 @@ def test_no_path_breaks_a_file(path: str, camera: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", [pytest.param(name, marks=pytest.mark.slow) for name in SENSORS])
 def test_the_code_that_flies_has_no_misra_finding(kind: str, camera: Any, tmp_path: Path) -> None:
     code = flight_code(SENSORS[kind].calibrated(camera))
-    for name, text in code.files("ss", {}, DIGEST).items():
-        (tmp_path / name).write_text(text)
+    written(code, tmp_path)
     checked = ["cppcheck", "--addon=misra", "--quiet", "--std=c99", "-USS_FLOAT", "-USS_SELFTEST"]
     said = subprocess.run(
         [*checked, "ss.c"], cwd=tmp_path, check=True, capture_output=True, text=True

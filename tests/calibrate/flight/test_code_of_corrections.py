@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import bench
 import numpy as np
 import pytest
-from raw_sensors import SENSORS, apart_deg, compiled
+from raw_sensors import FLAGS, SENSORS, apart_deg, c_answers, compiled, module_of, written
 
 from calibrate.calibration import Calibration
 from calibrate.documents import SavedCalibration, document, load, of_document, with_correction
@@ -66,17 +64,6 @@ def poses(kind: str, saved: SavedCalibration, seed: int) -> tuple[np.ndarray, Re
     return telemetry, readings_of(Table(columns, 2, "new", {}), stated)
 
 
-def module_of(code: Any, directory: Path) -> ModuleType:
-    for name, text in code.files("ss", {}, "0" * 32).items():
-        (directory / name).write_text(text)
-    spec = importlib.util.spec_from_file_location("ss", directory / "ss.py")
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("kind", ["spots", "quadrants", "warm faces"])
 def test_code_of_a_corrected_calibration_answers_what_its_document_does(
     kind: str, camera: Calibration, tmp_path: Path
@@ -86,7 +73,7 @@ def test_code_of_a_corrected_calibration_answers_what_its_document_does(
     assert len(read) == len(rows)
     code = corrected_code(saved, read.only(np.arange(60)))
     assert code.judged_on == "of the new poses"
-    module = module_of(code, tmp_path)
+    module = module_of(written(code, tmp_path))
     count = len(SENSORS[kind].columns)
     kelvin = rows[:, count] if rows.shape[1] > count else None
     said = module.solve(rows[:, :count], kelvin)
@@ -108,14 +95,10 @@ def test_c_of_a_corrected_calibration_answers_what_python_does(
 ) -> None:
     saved = corrected("six faces", camera)
     rows, read = poses("six faces", saved, 6)
-    module = module_of(corrected_code(saved, read), tmp_path)
-    flags = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic")
-    compiled(tmp_path, "gcc", *flags, "ss.c", "ss_example.c", "-o", "example", "-lm")
-    compiled(tmp_path, "gcc", *flags, "-DSS_SELFTEST", "ss.c", "ss_selftest.c", "-o", "own", "-lm")
+    module = module_of(written(corrected_code(saved, read), tmp_path))
+    compiled(tmp_path, "gcc", *FLAGS, "-DSS_SELFTEST", "ss.c", "ss_selftest.c", "-o", "own", "-lm")
     assert " 0 differ from the model" in compiled(tmp_path, "./own")
-    text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in rows)
-    said = compiled(tmp_path, "./example", input=text).splitlines()
-    answers = np.array([line.split() for line in said], dtype=float)
+    answers = c_answers(tmp_path, rows)
     made = module.solve(rows)
     assert np.array_equal(made["status"], answers[:, 0].astype(int))
     good = answers[:, 0] == 0
@@ -149,7 +132,7 @@ def test_a_correction_of_a_correction_is_in_the_code(camera: Calibration, tmp_pa
     path.write_text(json.dumps(with_correction(once, change, [])))
     twice = load(path)
     rows, read = poses("electrodes", twice, 6)
-    said = module_of(corrected_code(twice, read), tmp_path).sun(rows)
+    said = module_of(written(corrected_code(twice, read), tmp_path)).sun(rows)
     expected = twice.predict(read.features, read.context)
     good = np.isfinite(said[:, 0]) & np.isfinite(expected[:, 0])
     assert good.mean() > 0.5

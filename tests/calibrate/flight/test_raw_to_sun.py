@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -10,12 +9,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from raw_sensors import DARK, OTHERS, SENSORS, apart_deg, compiled
+import raw_sensors
+from raw_sensors import (
+    CHECKED,
+    DARK,
+    FLAGS,
+    OTHERS,
+    SENSORS,
+    apart_deg,
+    c_answers,
+    compiled,
+    module_of,
+)
 
 from calibrate.flight.code import flight_code
 
-FLAGS = ["-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic"]
-CHECKED = ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"]
 DIGEST = "0123456789abcdef0123456789abcdef"
 #: A hundredth of the model's error is what code may add.
 SHARE = 0.01
@@ -32,31 +40,11 @@ def written(camera, tmp_path_factory) -> Callable[[str], tuple[Any, Any, Path]]:
             found = SENSORS[kind].calibrated(camera)
             code = flight_code(found)
             directory = tmp_path_factory.mktemp("code")
-            for name, text in code.files("ss", {"Model": kind}, DIGEST).items():
-                (directory / name).write_text(text)
+            raw_sensors.written(code, directory, DIGEST)
             known[kind] = found, code, directory
         return known[kind]
 
     return of
-
-
-def module_of(directory: Path) -> Any:
-    spec = importlib.util.spec_from_file_location("ss", directory / "ss.py")
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def c_answers(directory: Path, rows: np.ndarray, program: str = "example") -> np.ndarray:
-    """Status, direction, angles and 1-sigma (N, 8) of rows, by the compiled example."""
-    if not (directory / program).exists():
-        files = ["ss.c", "ss_example.c", "-o", program, "-lm"]
-        compiled(directory, "gcc", "-std=c99", *FLAGS, *CHECKED, *files)
-    text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in rows)
-    lines = compiled(directory, f"./{program}", input=text).splitlines()
-    return np.array([line.split() for line in lines], dtype=float)
 
 
 @needs_gcc
@@ -114,11 +102,11 @@ def test_the_modules_own_test_passes_on_rows_of_the_calibration(kind, written):
 @pytest.mark.parametrize(
     "compiler",
     [
-        ["gcc", "-std=c99", "-O2"],
-        ["clang", "-std=c99", "-O2"],
-        ["g++", "-x", "c++", "-std=c++11"],
-        ["gcc", "-std=c99", "-DSS_FLOAT"],
-        ["gcc", "-std=c99", *CHECKED],
+        ["gcc", *FLAGS, "-O2"],
+        ["clang", *FLAGS, "-O2"],
+        ["g++", "-x", "c++", "-std=c++11", *FLAGS[1:]],
+        ["gcc", *FLAGS, "-DSS_FLOAT"],
+        ["gcc", *FLAGS, *CHECKED],
     ],
     ids=["gcc", "clang", "g++", "float", "sanitizers"],
 )
@@ -134,15 +122,14 @@ def test_compilers_have_nothing_to_say_and_the_self_test_passes(compiler, kind, 
         pytest.skip(f"no {compiler[0]} here")
     _, _, directory = written(kind)
     files = ["-DSS_SELFTEST", "ss.c", "ss_selftest.c", "-o", "selftest", "-lm"]
-    compiled(directory, *compiler, *FLAGS, *files)
+    compiled(directory, *compiler, *files)
     assert " 0 differ from the model" in compiled(directory, "./selftest")
 
 
 @needs_gcc
 def test_files_of_two_runs_do_not_compile_together(written, tmp_path):
     _, code, _ = written("spots")
-    for name, text in code.files("ss", {}, DIGEST).items():
-        (tmp_path / name).write_text(text)
+    raw_sensors.written(code, tmp_path, DIGEST)
     (tmp_path / "ss.h").write_text(code.files("ss", {}, DIGEST[::-1])["ss.h"])
     with pytest.raises(AssertionError, match="of different calibrations: copy both from one run"):
         compiled(tmp_path, "gcc", "-std=c99", "-c", "ss.c")

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from calibrate.conventions.findings import findings
 from calibrate.readings import Readings, readings_of
-from calibrate.roles import guess, understood
+from calibrate.roles import guess
 from calibrate.table import read_table
 from calibrate.template import preview
 
@@ -43,25 +43,6 @@ def test_spots_and_directions_are_those_of_the_plain_table(name: str) -> None:
     assert found.sun == pytest.approx(sun_of(plain[:, 2:]), abs=2e-6)  # six of a quaternion
 
 
-def test_quadrants_by_corners_are_in_their_order() -> None:
-    name = "form-59_quad_UL_UR_LL_LR.csv"
-    upper_left, upper_right, lower_left, lower_right, *angles = columns_of(name).T
-    total = upper_left + upper_right + lower_left + lower_right
-    found = samples_of(name)
-    x = (upper_right + lower_right - upper_left - lower_left) / total
-    y = (upper_left + upper_right - lower_left - lower_right) / total
-    assert found.features == pytest.approx(np.column_stack([x, y]), abs=1e-12)
-    assert found.sun == pytest.approx(sun_of(np.column_stack(angles)), abs=1e-12)
-
-
-def test_faces_of_free_names_are_channels_in_the_order_of_the_file() -> None:
-    name = "form-71_six_names_lux.csv"
-    columns = columns_of(name)
-    found = samples_of(name)
-    assert np.array_equal(found.features, columns[found.rows - 2, :6])
-    assert found.sun == pytest.approx(columns[found.rows - 2, 6:], abs=1e-3)  # four decimals
-
-
 def test_an_attitude_turns_the_suns_direction_into_the_sensors_frame() -> None:
     name = "form-80_attitude_ephemeris.csv"
     columns = columns_of(name)
@@ -82,14 +63,6 @@ def test_every_form_is_shown_with_the_role_of_its_columns(name: str) -> None:
     roles = {one["name"]: one["role"] for one in shown["columns"]}
     assert {word.split(" ")[0] for word in roles.values() if word} >= {"reading", "direction"}
     assert [name for name, role in roles.items() if role is None] in ([], ["column_1"])
-
-
-def test_four_tilted_cells_are_no_quadrants() -> None:
-    found = understood(read_table(CASES / "four-tilted-photodiodes.csv"))
-    assert found.settings.readings.kind == "channels"
-    assert any("linear in the light's direction" in note for note in found.notes)
-    for name in ("quadrants-inverted-5V.csv", "form-59_quad_UL_UR_LL_LR.csv"):
-        assert guess(read_table(CASES / name)).readings.kind == "quadrants"
 
 
 def test_an_angle_off_the_axis_under_the_name_elevation_is_found() -> None:

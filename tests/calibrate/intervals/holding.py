@@ -81,17 +81,17 @@ def cells(
     fresh = readings_of(made, found.settings)
     predicted = found.model.predict(fresh.features, fresh.context)
     inside = held(predicted, found.deviations_deg(fresh.features), fresh.sun)
-    by_code = np.full(inside.shape, np.nan)
+    coded = np.full(inside.shape, np.nan)
     if code:
         raw = np.column_stack([made.columns[one] for one in sensor.names])
-        by_code = held(*c_answers(found, raw, directory), fresh.sun)
+        coded = held(*by_code(found, raw, directory), fresh.sun)
     assert np.isfinite(inside).all(axis=1).mean() > 0.9
     poses = np.bincount(off_of(np.column_stack(columns[-3:])), minlength=18)
     band = off_of(fresh.sun)
     return [
         Cell(
             name, seed, 10 * int(at), axis, int(poses[at]),
-            *(_mean(one[band == at, axis]) for one in (inside, by_code)),
+            *(_mean(one[band == at, axis]) for one in (inside, coded)),
         )
         for at in np.flatnonzero(poses >= FEWEST)
         for axis in (0, 1)
@@ -104,19 +104,13 @@ def held(answers: np.ndarray, sigma_deg: np.ndarray, sun: np.ndarray) -> np.ndar
     return np.where(np.isfinite(size), size <= NORMAL_95 * sigma_deg, np.nan)
 
 
-def c_answers(
-    found: Calibration, raw: np.ndarray, directory: Path
-) -> tuple[np.ndarray, np.ndarray]:
+def by_code(found: Calibration, raw: np.ndarray, directory: Path) -> tuple[np.ndarray, np.ndarray]:
     """Directions and 1-sigma by compiled C code; NaN where it refuses."""
-    from raw_sensors import compiled
+    from raw_sensors import c_answers, written
 
-    for name, text in flight_code(found).files("ss", {}, "0" * 32).items():
-        (directory / name).write_text(text)
-    files = ("ss.c", "ss_example.c", "-o", "example", "-lm")
-    compiled(directory, "gcc", "-std=c99", "-O2", *files)
-    lines = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in raw)
-    said = compiled(directory, "./example", input=lines).splitlines()
-    answers = np.array([line.split() for line in said], dtype=float)
+    written(flight_code(found), directory)
+    (directory / "example").unlink(missing_ok=True)
+    answers = c_answers(directory, raw, ("-O2",))
     answers[answers[:, 0] != 0] = np.nan
     return answers[:, 1:4], answers[:, 6:8]
 

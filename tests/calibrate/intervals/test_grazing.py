@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import shutil
 from dataclasses import replace
@@ -11,7 +10,7 @@ from pathlib import Path
 import bench
 import numpy as np
 import pytest
-from raw_sensors import SENSORS, compiled
+from raw_sensors import SENSORS, c_answers, module_of, written
 
 from calibrate.calibration import Calibration
 from calibrate.documents import load, save
@@ -92,26 +91,15 @@ def test_a_loaded_calibration_states_it_too(box: Calibration, tmp_path: Path) ->
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
 def test_c_and_python_state_what_the_calibration_does(box: Calibration, tmp_path: Path) -> None:
-    code = flight_code(box)
-    for name, text in code.files("ss", {}, "0" * 32).items():
-        (tmp_path / name).write_text(text)
-    flags = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic")
-    compiled(tmp_path, "gcc", *flags, "ss.c", "ss_example.c", "-o", "example", "-lm")
+    written(flight_code(box), tmp_path)
     raw = SENSORS["six faces"].raw(5, 4000)
-    text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in raw)
-    said = compiled(tmp_path, "./example", input=text).splitlines()
-    answers = np.array([line.split() for line in said], dtype=float)
+    answers = c_answers(tmp_path, raw)
     good = answers[:, 0] == 0
     assert good.mean() > 0.9
-    spec = importlib.util.spec_from_file_location("ss", tmp_path / "ss.py")
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
     assert box.intervals is not None
     at = answers[good, 1:4]
     expected = box.intervals.at(at)
     times = box.intervals.grazing.times(at)
     assert (times > 1.5).any(axis=1).sum() > 50
     assert answers[good, 6:8] == pytest.approx(expected, rel=2e-5)
-    assert module.solve(raw)["sigma_deg"][good] == pytest.approx(expected, rel=2e-5)
+    assert module_of(tmp_path).solve(raw)["sigma_deg"][good] == pytest.approx(expected, rel=2e-5)
