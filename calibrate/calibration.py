@@ -77,76 +77,37 @@ MOST_FITTED = 40_000
 class Calibration:
     """All that a calibration found.
 
-    Attributes
-    ----------
-    settings : Settings
-        As used, applied changes among them.
-    findings : tuple of Finding
-        Conventions that the file seems to follow, those applied included.
-    applied : tuple of Finding
-        Of them those that were.
-    readings : Readings
-        Samples that were fitted.
-    excluded : tuple of Excluded
-        Samples left out, with the reason.
-    off_runs : tuple of RunOffset
-        Runs off by a constant, left out.
-    fold_deg : float or None
-        Smallest off-axis angle of samples whose reading another direction gives too; left out.
-    geometry : SensorGeometry
-        The drawing as given to the models.
-    candidates : tuple of Candidate
-        Every model tried, the smallest error first.
-    chosen : Candidate
-    why : str
-        It was chosen.
-    model : Model
-        Fitted to all samples.
-    residual_deg, noise_deg : float
-        RMS of samples fitted, and of single samples' noise.
-    intervals : Intervals or None
-        None where samples are too few.
-    spread_deg : ndarray, shape (N,)
-        Of the fit itself at each sample, by refits with other noise.
-    verdict : Verdict
-    digest : str
-        SHA-256 of the files, 32 digits.
-    sources : tuple of str
-        Names of the files.
-    notes : tuple of str
-        On how the files, pictures and cells were read, and changes that did not settle.
-    digests, columns : tuple of str
-        SHA-256 of each file, and columns of the first table in its order.
-    left_out : ndarray, shape (M, 3), optional
-        Predicted minus true direction of the samples compared on, each when a fit did not see it.
-    limits : ReadingLimits
-        Of readings that may be used.
+    `left_out` (M, 3) is predicted minus true direction of the samples compared on, each when a fit
+    did not see it; `spread_deg` (N,) that of the fit itself at each sample, by refits with other
+    noise. Digests are SHA-256, of all files 32 digits.
     """
 
-    settings: Settings
-    findings: tuple[Finding, ...]
-    applied: tuple[Finding, ...]
-    readings: Readings
-    excluded: tuple[Excluded, ...]
-    off_runs: tuple[RunOffset, ...]
-    fold_deg: float | None
-    geometry: SensorGeometry
-    candidates: tuple[Candidate, ...]
+    settings: Settings  # as used, applied changes among them
+    findings: tuple[
+        Finding, ...
+    ]  # conventions that the file seems to follow, applied ones included
+    applied: tuple[Finding, ...]  # of them those that were
+    readings: Readings  # samples that were fitted
+    excluded: tuple[Excluded, ...]  # samples left out, with the reason
+    off_runs: tuple[RunOffset, ...]  # runs off by a constant, left out
+    fold_deg: float | None  # smallest off-axis angle of samples that fold; left out
+    geometry: SensorGeometry  # the drawing as given to the models
+    candidates: tuple[Candidate, ...]  # every model tried, the smallest error first
     chosen: Candidate
-    why: str
-    model: Model
-    residual_deg: float
-    noise_deg: float
-    intervals: Intervals | None
+    why: str  # it was chosen
+    model: Model  # fitted to all samples
+    residual_deg: float  # RMS of samples fitted
+    noise_deg: float  # RMS of single samples
+    intervals: Intervals | None  # None where samples are too few
     spread_deg: Floats
     verdict: Verdict
     digest: str
-    sources: tuple[str, ...]
-    notes: tuple[str, ...] = ()
-    digests: tuple[str, ...] = ()
+    sources: tuple[str, ...]  # names of the files
+    notes: tuple[str, ...] = ()  # on how files were read, and changes that did not settle
+    digests: tuple[str, ...] = ()  # of each file
     left_out: Floats | None = None
     limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
-    columns: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()  # of the first table in its order
 
     def deviation_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
