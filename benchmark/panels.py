@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
@@ -19,107 +18,74 @@ BLUE, VERMILION, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 #: Dark to light greys.
 INK, FAINT, GRID = "#1a1d21", "#5c6570", "#e3e7eb"
 _DASHED = (0, (3, 2))
-_MARGIN = 12
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Sizes in points.
-
-    Attributes
-    ----------
-    width, height
-        Of a panel with its names and ticks.
-    left, right, top, bottom
-        Around the axes of a panel.
-    head, foot
-        Above and below all panels.
-    explained
-        From the top down to the explanation, or from the foot up where it is negative.
-    legend
-        From the top down to the legend.
-    columns
-        Number of panels side by side.
-    """
-
-    width: int
-    height: int
-    left: int
-    right: int
-    top: int
-    bottom: int
-    head: int
-    foot: int
-    explained: int
-    legend: int
-    columns: int = 5
+#: Inches above all panels, and below.
+_HEAD, _FOOT = 1.1, 0.5
 
 
 def panel_figure(
-    layout: Layout,
     panels: Sequence[T],
     fill: Callable[[Axes, T], None],
     *,
+    size: tuple[float, float],
     title: str,
     explained: str,
     legend: Sequence[Line2D],
-    handle: float,
+    columns: int = 5,
+    margins: tuple[float, float] = (0.6, 0.15),
 ) -> Figure:
-    """Draw panels row by row below a title.
+    """Draw panels row by row, each of a size in inches, below a title and a legend.
 
     Parameters
     ----------
-    layout
-        Sizes.
     panels
         What each panel shows.
     fill
         Draws one of them into its axes.
+    size
+        Width and height of a panel with its names and ticks.
     title, explained
         Text above all, and what is across and upwards.
     legend
         Entries.
-    handle
-        Length of a line in the legend, in font sizes.
+    columns
+        Number of panels side by side.
+    margins
+        Inches left and right of all panels.
     """
     from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
 
-    width = 2 * _MARGIN + layout.columns * layout.width
-    height = layout.head + max(1, math.ceil(len(panels) / layout.columns)) * layout.height
-    height += layout.foot
-    drawn = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor="white")
-    place: dict[str, Any] = {"ha": "left", "va": "baseline"}
-    left = _MARGIN / width
-    drawn.text(left, 1 - 22 / height, title, size=15, weight="bold", color=INK, **place)
-    down = layout.explained / height
-    drawn.text(left, 1 - down if down > 0 else -down, explained, size=10, color=FAINT, **place)
+    rows = max(1, math.ceil(len(panels) / columns))
+    width, height = columns * size[0], rows * size[1] + _HEAD + _FOOT
+    drawn = Figure(figsize=(width, height), facecolor="white")
+    left = 0.15 / width
+    drawn.text(left, 1 - 0.35 / height, title, size=15, weight="bold", color=INK)
+    drawn.text(left, 1 - 0.6 / height, explained, size=10, color=FAINT)
     drawn.legend(
         handles=legend,
         loc="upper left",
-        bbox_to_anchor=(left, 1 - layout.legend / height),
+        bbox_to_anchor=(0, 1 - 0.65 / height),
         ncols=len(legend),
         fontsize=11,
         labelcolor=FAINT,
         frameon=False,
-        borderpad=0,
-        borderaxespad=0,
-        handlelength=handle,
-        columnspacing=2.0,
     )
-    for number, panel in enumerate(panels):
-        column, line = number % layout.columns, number // layout.columns
-        axes = drawn.add_axes(
-            (
-                (_MARGIN + column * layout.width + layout.left) / width,
-                1 - (layout.head + (line + 1) * layout.height - layout.bottom) / height,
-                (layout.width - layout.left - layout.right) / width,
-                (layout.height - layout.top - layout.bottom) / height,
-            )
-        )
-        fill(axes, panel)
     if not panels:
-        at = 1 - (layout.head + 12) / height
-        drawn.text(left, at, "nothing is stored", size=11, color=FAINT, **place)
+        drawn.text(left, 0.5, "nothing is stored", size=11, color=FAINT)
+        return drawn
+    grid = drawn.subplots(rows, columns, squeeze=False)
+    drawn.subplots_adjust(
+        left=margins[0] / width,
+        right=1 - margins[1] / width,
+        bottom=_FOOT / height,
+        top=1 - (_HEAD + 0.35 * size[1]) / height if columns > 1 else 1 - _HEAD / height,
+        wspace=0.28,
+        hspace=0.75,
+    )
+    for number, axes in enumerate(grid.flat):
+        if number < len(panels):
+            fill(axes, panels[number])
+        else:
+            axes.set_axis_off()
     return drawn
 
 

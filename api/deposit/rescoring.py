@@ -22,10 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from api.deposit.frames import FOLDER
-from benchmark.contract import SPLITS, Cell, Preset
+from benchmark.contract import SPLITS, Cell
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.export import read_card
 from benchmark.datasets.export_arrays import read_archive, samples_of
+from benchmark.datasets.preset import Preset
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import NUMBERS
 from benchmark.running.condition_data import forget

@@ -84,8 +84,8 @@ def leaderboard_of_dataset(
 def findings(known: Knowledge) -> tuple[Finding, ...]:
     """Return the findings of the published record, which is of standard data sets."""
     from benchmark.leaderboard.findings import (  # noqa: PLC0415 - needs every experiment
-        Record,
+        FindingsRecord,
         findings_of,
     )
 
-    return findings_of(Record.published(), known.standard_resolutions)
+    return findings_of(FindingsRecord.published(), known.standard_resolutions)

@@ -38,7 +38,7 @@ VERDICTS = (*AGREEMENTS, NOT_JUDGED, NOT_MEASURED)
 
 
 @dataclass(frozen=True)
-class Verdict:
+class PropertyVerdict:
     """One property of one method.
 
     Attributes
@@ -87,7 +87,7 @@ class MethodAssessment:
     taxonomy: str
     case_study: str
     extractors: tuple[str, ...]
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[PropertyVerdict, ...]
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -171,7 +171,7 @@ def document(assessed: Iterable[MethodAssessment]) -> dict[str, Any]:
     }
 
 
-def _show(verdict: Verdict) -> dict[str, Any]:
+def _show(verdict: PropertyVerdict) -> dict[str, Any]:
     return {
         "property": verdict.name,
         "survey": verdict.survey,
@@ -202,12 +202,12 @@ class _Evidence:
 
 def _verdict(
     definition: Definition, survey: int, names: Sequence[str], evidence: _Evidence
-) -> Verdict:
+) -> PropertyVerdict:
     """Take the best of a method's implementations, of all series each is measured on."""
     best, name, missing = _best(definition, names, evidence)
     measured = definition.score(best.value) if best else None
     undecided = definition.why_undecided(survey, measured)
-    return Verdict(
+    return PropertyVerdict(
         definition.name,
         survey,
         None if undecided else measured,

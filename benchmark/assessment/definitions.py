@@ -11,8 +11,8 @@ The limits were written down and committed before any outcome was looked at, and
 moved towards agreement. This is the second version: it was written from the survey's text, knowing
 which columns of the first had been found to measure something else, and before its own outcomes
 were computed. No limit was moved. Scores have been own errors since: the 0.016 deg that a bench
-added to them before decide nothing at limits of 0.5 and 5 deg. `benchmark.assessment.former` keeps
-what the first version said.
+added to them before decide nothing at limits of 0.5 and 5 deg. `former.csv` keeps what the first
+version said.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,8 +20,11 @@ from algorithms.angles import separation_deg
 from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor, Floats, Model
 from algorithms.pipeline import Pipeline, extract_features
-from benchmark.contract import Preset, Samples
 from benchmark.simulator.light.memory import memory
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.datasets.samples import Samples
 
 #: Takings of a run time, by turns; the shortest counts.
 _TAKINGS = 7

@@ -53,7 +53,7 @@ class Sketch:
 
 
 @dataclass(frozen=True)
-class Experiment:
+class ClaimExperiment:
     """The module that measures a claim."""
 
     claim: str
@@ -68,7 +68,7 @@ class ExperimentError(ValueError):
 
 
 @cache
-def find_experiments() -> Mapping[str, Experiment]:
+def find_experiments() -> Mapping[str, ClaimExperiment]:
     """Every experiment by its claim.
 
     Raises
@@ -76,7 +76,7 @@ def find_experiments() -> Mapping[str, Experiment]:
     ExperimentError
         For a module without ``trial``, and for two modules of one claim.
     """
-    by_claim: dict[str, Experiment] = {}
+    by_claim: dict[str, ClaimExperiment] = {}
     for package in pkgutil.iter_modules(experiments.__path__, f"{experiments.__name__}."):
         folder = importlib.import_module(package.name)
         for info in pkgutil.iter_modules(folder.__path__, f"{package.name}."):
@@ -91,7 +91,7 @@ def find_experiments() -> Mapping[str, Experiment]:
     return dict(sorted(by_claim.items()))
 
 
-def _experiment(module: str, claim: str) -> Experiment:
+def _experiment(module: str, claim: str) -> ClaimExperiment:
     loaded: Any = importlib.import_module(module)
     trial = getattr(loaded, "trial", None)
     if not callable(trial):
@@ -100,4 +100,4 @@ def _experiment(module: str, claim: str) -> Experiment:
     if not about:
         raise ExperimentError(f"{module} must say in a docstring what it measures")
     sketch = getattr(loaded, "SKETCH", Sketch())
-    return Experiment(claim, module, cast("Callable[[int], Trial]", trial), sketch, about)
+    return ClaimExperiment(claim, module, cast("Callable[[int], Trial]", trial), sketch, about)

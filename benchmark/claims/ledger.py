@@ -11,7 +11,7 @@ from typing import Any
 
 from benchmark.claims.former import FormerOutcome, former_outcomes
 from benchmark.claims.judgement import Judgement, judge, verdict
-from benchmark.claims.outcomes import RECORD, Outcome, read_outcomes
+from benchmark.claims.outcomes import RECORD, ClaimOutcome, read_outcomes
 from benchmark.claims.review import Review, published, reviews
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.claims.verification import contradictions
@@ -54,7 +54,7 @@ class Entry:
     rules: tuple[Judgement, ...]
     second: tuple[Judgement, ...]
     explanation: str
-    outcome: Outcome | None
+    outcome: ClaimOutcome | None
 
     @property
     def agrees(self) -> bool | None:
@@ -113,16 +113,7 @@ def tally(entries: Iterable[Entry]) -> dict[str, int]:
     return known | ({"not measured": counts["not measured"]} if counts["not measured"] else {})
 
 
-def unexplained_claims(entries: Iterable[Entry]) -> tuple[str, ...]:
-    """Name the claims whose verdict needs an explanation and has none."""
-    return tuple(
-        entry.claim.id
-        for entry in entries
-        if entry.verdict in VERDICTS[1:] and not entry.explanation
-    )
-
-
-def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> Entry:
+def _entry(claim: Claim, outcome: ClaimOutcome | None, written: tuple[str, str]) -> Entry:
     about, said = written
     review, former = reviews()[claim.id], former_outcomes().get(claim.id, ())
     if outcome is None:

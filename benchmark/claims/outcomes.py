@@ -40,7 +40,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ClaimOutcome:
     """What was measured of a claim.
 
     Attributes
@@ -70,7 +70,7 @@ def plan_digest(claim: Claim) -> str:
     return digest([claim.id, FIRST_TRIAL, claim.trials, claim.replicate, rules, uppers])
 
 
-def outcome_of(claim: Claim, trials: Sequence[Trial]) -> Outcome:
+def outcome_of(claim: Claim, trials: Sequence[Trial]) -> ClaimOutcome:
     """Put the trials of a claim together.
 
     Raises
@@ -93,7 +93,7 @@ def outcome_of(claim: Claim, trials: Sequence[Trial]) -> Outcome:
             )
     if claim.second and not all(trial.second for trial in trials):
         raise OutcomeError(f"{claim.id}: expected numbers by the second method ({claim.second})")
-    return Outcome(
+    return ClaimOutcome(
         claim.id,
         {rule.name: _numbers(t.values[rule.name] for t in trials) for rule in claim.rules},
         {
@@ -105,7 +105,7 @@ def outcome_of(claim: Claim, trials: Sequence[Trial]) -> Outcome:
     )
 
 
-def row_of(outcome: Outcome) -> Row:
+def row_of(outcome: ClaimOutcome) -> Row:
     """Return what the record keeps of an outcome, but for its digests; NaN is None."""
     row: Row = _without_nan(
         {
@@ -118,10 +118,10 @@ def row_of(outcome: Outcome) -> Row:
     return row
 
 
-def outcome_of_row(row: Row) -> Outcome:
+def outcome_of_row(row: Row) -> ClaimOutcome:
     """Return the outcome that a row of the record keeps."""
     plan, _, code = row["key"].partition(" ")
-    return Outcome(
+    return ClaimOutcome(
         row["claim"],
         {name: _given(values) for name, values in row["values"].items()},
         {name: _given(values) for name, values in row["second"].items()},
@@ -136,7 +136,7 @@ def outcome_of_row(row: Row) -> Outcome:
     )
 
 
-def read_outcomes(directory: Path | str = PUBLISHED) -> dict[str, Outcome]:
+def read_outcomes(directory: Path | str = PUBLISHED) -> dict[str, ClaimOutcome]:
     """Return every outcome of a record by its claim; StoreError for a broken file."""
     return {name: outcome_of_row(row) for name, row in RECORD.read(directory).items()}
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmark.claims.experiment import Sketch
-from benchmark.claims.outcomes import Curve, Outcome
+from benchmark.claims.outcomes import ClaimOutcome, Curve
 from benchmark.claims.rules import Claim
 from benchmark.plot_style import svg
 
@@ -28,12 +28,12 @@ def file_of(claim: str) -> str:
     return f"claims/{claim}.svg"
 
 
-def picture(claim: Claim, outcome: Outcome, sketch: Sketch) -> str:
+def picture(claim: Claim, outcome: ClaimOutcome, sketch: Sketch) -> str:
     """Draw the lines of an outcome as SVG: median over the trials, and their extremes shaded."""
     return svg(lambda: figure(claim, outcome, sketch), f"{claim.id}: {claim.statement}")
 
 
-def figure(claim: Claim, outcome: Outcome, sketch: Sketch) -> Figure:
+def figure(claim: Claim, outcome: ClaimOutcome, sketch: Sketch) -> Figure:
     """Draw the same as a figure of Matplotlib."""
     from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
 
@@ -72,7 +72,7 @@ def _line(axes: Axes, name: str, line: Curve, words: tuple[str, ...], number: in
     axes.fill_between(x, line.low, line.high, color=colour, alpha=0.15, linewidth=0)
 
 
-def _words(outcome: Outcome) -> tuple[str, ...]:
+def _words(outcome: ClaimOutcome) -> tuple[str, ...]:
     """Return the places in the order they come, where they are words."""
     places = [place for line in outcome.lines.values() for place in line.x]
     if not any(isinstance(place, str) for place in places):
@@ -80,6 +80,6 @@ def _words(outcome: Outcome) -> tuple[str, ...]:
     return tuple(dict.fromkeys(str(place) for place in places))
 
 
-def _positive(outcome: Outcome) -> bool:
+def _positive(outcome: ClaimOutcome) -> bool:
     values = [v for line in outcome.lines.values() for v in line.low if not math.isnan(v)]
     return bool(values) and min(values) > 0

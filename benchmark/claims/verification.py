@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from benchmark.claims.outcomes import Outcome, plan_digest
+from benchmark.claims.outcomes import ClaimOutcome, plan_digest
 from benchmark.claims.rules import Claim
 
 
-def contradictions(claim: Claim, outcome: Outcome) -> Iterator[str]:
+def contradictions(claim: Claim, outcome: ClaimOutcome) -> Iterator[str]:
     """Say in what an outcome cannot be of its claim's plan; nothing where it can."""
     names = {rule.name for rule in claim.rules}
     for what, held in (("values", outcome.values), ("second", outcome.second)):

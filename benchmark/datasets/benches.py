@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.contract import Preset
 from benchmark.metrics.separation import aligned_error_deg
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Benches that are drawn to say what alignment leaves of their errors, and directions looked at.
 _DRAWN, _DIRECTIONS = 40, 200

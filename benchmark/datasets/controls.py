@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.contract import Bound, Preset
 from benchmark.datasets.benches import aligned_bench_deg
 from benchmark.metrics.separation import separation_deg, store
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import tangent_axes
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.metrics.bounds import Bound
 
 BORESIGHT = (0.0, 0.0, 1.0)
 

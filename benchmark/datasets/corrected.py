@@ -7,12 +7,16 @@ hot, aged, with other noise. Conditions that change only light or mounting share
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from algorithms.references import ReferenceCorrection
-from benchmark.contract import Preset, References, Samples
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.sensor import UnitSpread
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.datasets.samples import Samples
+    from benchmark.simulator.readout.references import References
 
 #: Where a simulated sensor keeps what its references depend on.
 _PARTS = ("detector", "readout")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from algorithms.contract import Extractor, Floats
 from algorithms.pipeline import extract_features
 from algorithms.references import ReferenceCorrection
-from benchmark.contract import Samples
+
+if TYPE_CHECKING:
+    from benchmark.datasets.samples import Samples
 
 #: Bytes of corrected observations above which they are made in parts, and bytes of a part.
 _LARGE_BYTES, _PART_BYTES = 256 * 2**20, 16 * 2**20

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from algorithms.contract import Floats
-from benchmark.contract import Bound, Preset
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.metrics.bounds import Bound
 
 
 def method_bound_deg(

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark import contract
 from benchmark.canonical import DIGITS
 
 Floats = NDArray[np.float64]
@@ -57,7 +56,7 @@ class Samples:
         return arrays_of(self)
 
 
-def arrays_of(samples: contract.Samples) -> dict[str, NDArray[Any] | None]:
+def arrays_of(samples: Samples) -> dict[str, NDArray[Any] | None]:
     """Return the arrays of one split by name; columns of a context come last, sorted.
 
     True directions are among them only where there are others beside.
@@ -73,12 +72,12 @@ def arrays_of(samples: contract.Samples) -> dict[str, NDArray[Any] | None]:
     return arrays
 
 
-def samples_hash(samples: contract.Samples) -> str:
+def samples_hash(samples: Samples) -> str:
     """SHA-256 (32 hexadecimal digits) over the arrays of one split: names, types, shapes, bytes."""
     return _arrays_hash(arrays_of(samples))
 
 
-def head_hash(samples: contract.Samples) -> str:
+def head_hash(samples: Samples) -> str:
     """`samples_hash` of the first `HEAD` samples: those that ``generate(..., n=HEAD)`` gives."""
     return _arrays_hash(
         {name: None if a is None else a[:HEAD] for name, a in arrays_of(samples).items()}

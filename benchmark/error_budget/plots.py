@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from benchmark.error_budget.sentences import PARTS, bound_of, contributions, times, verdict
-from benchmark.panels import BLUE, FAINT, GRID, INK, VERMILION, Layout, dots, panel_figure, rule
+from benchmark.panels import BLUE, FAINT, GRID, INK, VERMILION, dots, panel_figure, rule
 from benchmark.plot_style import svg
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Row = Mapping[str, Any]
 
 _ABOUT = "What each part of the chain adds to the own error of each data set's leader"
-_LINE, _DOT = 16, 5.6
+_DOT = 5.6
 _TICK: dict[str, Any] = {"color": INK, "marker": "|", "ms": 10, "mew": 1.6, "ls": ""}
 _SMALL: dict[str, Any] = {"color": FAINT, "marker": "o", "ms": 3.2, "mew": 0, "ls": ""}
 #: Contributions so many times below the bound are left out.
@@ -38,28 +38,16 @@ def picture(rows: Sequence[Row]) -> str:
 
 def figure(rows: Sequence[Row]) -> Figure:
     """Draw the same as a figure of Matplotlib."""
-    layout = Layout(
-        width=900,
-        height=_LINE * len(rows) + 60,
-        left=170,
-        right=250,
-        top=24,
-        bottom=30,
-        head=62,
-        foot=6,
-        explained=39,
-        legend=52,
-        columns=1,
-    )
     return panel_figure(
-        layout,
         [rows] if rows else [],
         _fill,
+        size=(12.5, 0.23 * len(rows)),
+        columns=1,
+        margins=(2.3, 3.4),
         title="Error budget of every data set's leader",
         explained="across: degrees; RMS of unit 0, its bound, and what each part "
         "contributes (root mean square); the largest part is named",
         legend=_legend(),
-        handle=1.0,
     )
 
 

@@ -43,7 +43,7 @@ _WITHOUT: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class Verdict:
+class MainErrorSource:
     """Main error source of a pipeline.
 
     Attributes
@@ -73,7 +73,7 @@ def bound_of(row: Row) -> float:
     return float(row["bound_deg"] if unit is None else unit)
 
 
-def verdict(row: Row) -> Verdict:
+def verdict(row: Row) -> MainErrorSource:
     """Judge a row of `benchmark.error_budget.table`."""
     parts = contributions(row)
     leading = max(parts, key=lambda part: parts[part])
@@ -81,9 +81,9 @@ def verdict(row: Row) -> Verdict:
     said = f"`{row['dataset']}`: the RMS of {row['extractor']} + {row['model']} on unit 0 is "
     said += f"{degrees(row['rms_deg'])}, {times(ratio)} its bound"
     if ratio <= NEAR:
-        return Verdict(True, parts, leading, f"{said}.")
+        return MainErrorSource(True, parts, leading, f"{said}.")
     said += f"{_judged(row)}; {_measured(row, leading)}. {_blame(row, parts, leading)}."
-    return Verdict(False, parts, leading, said)
+    return MainErrorSource(False, parts, leading, said)
 
 
 def contributions(row: Row) -> dict[str, float]:

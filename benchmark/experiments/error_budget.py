@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass
 from functools import cached_property
 from statistics import geometric_mean
-from typing import Any, cast
+from typing import Any
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor
@@ -33,7 +33,7 @@ _Place = tuple[str, str, str]
 
 
 @dataclass(frozen=True)
-class Task:
+class BudgetTask:
     """A score of the standard unit, with the data set and the pipeline that it is of."""
 
     score: Mapping[str, Any]
@@ -79,19 +79,19 @@ class ErrorBudget(RecordedExperiment[str]):
         """Draw error, bound and contributions of every leader."""
         return {"error-budget.svg": lambda: plots.picture(self.rows())}
 
-    def tasks(self, cells: Sequence[str]) -> Iterator[Task]:
+    def tasks(self, cells: Sequence[str]) -> Iterator[BudgetTask]:
         """Make a task of each data set."""
         for name in cells:
             score = self.leader_rows[name]
-            yield Task(
+            yield BudgetTask(
                 score,
-                cast("Preset", self.parts.preset(name)),
+                self.parts.preset(name),
                 self.parts.extractor(score["extractor"]),
                 self.parts.model(score["model"]),
             )
 
     @staticmethod
-    def measure(task: Task) -> list[tuple[str, Row]]:
+    def measure(task: BudgetTask) -> list[tuple[str, Row]]:
         """Measure every variant of the chain (`benchmark.error_budget.variants`)."""
         score = task.score
         found = score_variants(

@@ -9,7 +9,7 @@ from itertools import groupby
 from benchmark.contract import Cell
 from benchmark.learning_curves import plots
 from benchmark.learning_curves.leaders import Leader, leaders
-from benchmark.learning_curves.measure import Task, measure
+from benchmark.learning_curves.measure import CurveTask, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.record import RECORD, published_curves
 from benchmark.results.components import current
@@ -74,14 +74,14 @@ class LearningCurves(RecordedExperiment[Leader]):
         """Return the data set: its leaders are measured together."""
         return cell.dataset
 
-    def tasks(self, cells: Sequence[Leader]) -> Iterator[Task]:
+    def tasks(self, cells: Sequence[Leader]) -> Iterator[CurveTask]:
         """Make a task of each data set's leaders, which share its data."""
         pins, scores = self.store.pins(), self.store.scores()
         for name, group in groupby(cells, key=self.name_of):
             found = tuple(group)
             pin = pins.get((name, found[0].condition, "test"))
             rows = {leader: scores[_cell(leader)] for leader in found}
-            yield Task(
+            yield CurveTask(
                 self.parts.preset(name),
                 found,
                 {leader.extractor: self.parts.extractor(leader.extractor) for leader in found},
@@ -98,7 +98,7 @@ class LearningCurves(RecordedExperiment[Leader]):
             )
 
     @staticmethod
-    def measure(task: Task) -> list[tuple[Leader, Row]]:
+    def measure(task: CurveTask) -> list[tuple[Leader, Row]]:
         """Calibrate every leader of a data set on growing subsets of its poses."""
         return [
             (one.leader, row_of(one, task.bounds_deg[one.leader], task.bench_deg))

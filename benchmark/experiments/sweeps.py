@@ -12,7 +12,7 @@ from benchmark.results.modules import modules_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import RecordedExperiment
 from benchmark.sweeps import plots
-from benchmark.sweeps.measure import Task, measure
+from benchmark.sweeps.measure import SweepTask, measure
 from benchmark.sweeps.plan import SERIES, SweepPlan, plan_points
 from benchmark.sweeps.points import Point
 from benchmark.sweeps.record import RECORD, point_of
@@ -73,17 +73,17 @@ class Sweeps(RecordedExperiment[Point]):
         """Return the extractor."""
         return cell.extractor
 
-    def tasks(self, cells: Sequence[Point]) -> Iterator[Task]:
+    def tasks(self, cells: Sequence[Point]) -> Iterator[SweepTask]:
         """Group methods that see the same observations."""
         for _, group in groupby(sorted(cells), key=lambda p: (p.series, p.sweep, p.point)):
             found = tuple(group)
-            yield Task(
+            yield SweepTask(
                 {point: self.parts.extractor(point.extractor) for point in found},
                 next((self.plan.settings[p] for p in found if p in self.plan.settings), None),
                 {p: self.plan.refused[p] for p in found if p in self.plan.refused},
             )
 
     @staticmethod
-    def measure(task: Task) -> list[tuple[Point, Row]]:
+    def measure(task: SweepTask) -> list[tuple[Point, Row]]:
         """Draw a point's observations, extract with every method, compare."""
         return measure(task)

@@ -9,8 +9,9 @@ machine's numerical kernels and with those of an older processor.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -117,31 +118,45 @@ def check(
     """
     store = Store(directory)
     known = parts or installed_parts()
-    found = [
-        *by_hand(store),
-        *(Difference(*pair) for pair in contradictions(store, known)),
-        *outdated(store, known, scope.published_scope(store.scores(), known)),
-        *_due(store, known),
-        *_derive(store),
-    ]
+    wanted = scope.published_scope(store.scores(), known)
+    found = [*differences_of_files(store, known, wanted), *_due(store, known), *_derive(store)]
     if stored_only:
         return found
     moved = list(_moved_heads(store, known))
     if moved:  # every number of these datasets is another: there is no point in measuring it
         return [*moved, *found]
+    for kind in kernels:
+        if kind == OLDER:
+            found += measured_again(
+                store, lambda directory: update_with_older_kernels(directory, workers), kind
+            )
+        else:
+            measure = partial(update, workers=workers, progress=progress, parts=parts)
+            found += measured_again(store, measure, kind)
+    return list(dict.fromkeys(found))
+
+
+def differences_of_files(
+    store: Store, parts: Parts, wanted: Collection[Cell]
+) -> Iterator[Difference]:
+    """Find what shows without measuring: changes by hand, contradictions, other code or cells."""
+    yield from by_hand(store)
+    yield from (Difference(*pair) for pair in contradictions(store, parts))
+    yield from outdated(store, parts, wanted)
+
+
+def measured_again(
+    store: Store, measure: Callable[[Path], object], kernels: str = NATIVE
+) -> list[Difference]:
+    """Compare a record with the one that `measure` makes in an empty directory."""
     try:
-        for kind in kernels:
-            with temporary_directory() as temporary:
-                if kind == OLDER:
-                    update_with_older_kernels(temporary, workers)
-                else:
-                    update(temporary, workers, progress, parts=parts)
-                found += compare(store, Store(temporary), kind)
+        with temporary_directory() as temporary:
+            measure(temporary)
+            return compare(store, Store(temporary), kernels)
     except KeyboardInterrupt as interrupted:
         raise RunInterruptedError(
             "interrupted; a check keeps nothing of what it measured"
         ) from interrupted
-    return list(dict.fromkeys(found))
 
 
 def compare(committed: Store, measured: Store, kernels: str = "") -> list[Difference]:
@@ -161,17 +176,7 @@ def compare_scores(
     samples: Mapping[tuple[str, str], int],
     kernels: str = "",
 ) -> list[Difference]:
-    """Compare scores by cell.
-
-    Parameters
-    ----------
-    committed, measured
-        Numbers by cell.
-    samples
-        Of the test split, by dataset and condition: what a share is of.
-    kernels
-        That were measured with.
-    """
+    """Compare scores by cell; `samples` of the test split are what a share is of."""
     found = []
     for cell in sorted(committed.keys() | measured.keys()):
         file = f"scores/{cell.dataset}.csv"
@@ -252,17 +257,7 @@ def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Dif
 
 
 def outdated(store: Store, parts: Parts, wanted: Collection[Cell]) -> Iterator[Difference]:
-    """Find components of other code than there is, and what is stored too much or too little.
-
-    Parameters
-    ----------
-    store
-        The record.
-    parts
-        Its data sets and implementations.
-    wanted
-        The cells that it is to hold.
-    """
+    """Find components of other code than there is, and what is stored too much or too little."""
     stored = store.components()
     now = current(parts)
     for name, one, other in stored.differences(now):

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from benchmark.contract import Cell, Preset
+from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place, bounds_agree
 from benchmark.plan.parts import Parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import Store
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: What two roundings to five digits and that of their quotient can add up to.
 _ROUNDED = 1.6e-4

@@ -145,21 +145,6 @@ def headlines(
     return sorted(found, key=lambda one: (-one.distance, one.study, one.published.quantity))
 
 
-def rank_correlation(rows: Iterable[Headline]) -> tuple[float, int]:
-    """Return Spearman's correlation of published and our accuracies, and of how many studies."""
-    from scipy.stats import spearmanr  # noqa: PLC0415 - SciPy, at the first use
-
-    found = accuracies(rows)
-    published = [one.published.value_deg for one in found]
-    ours = [float(one.our_deg) for one in found if one.our_deg is not None]
-    return float(spearmanr(published, ours).statistic), len(found)
-
-
-def accuracies(rows: Iterable[Headline]) -> list[Headline]:
-    """Return those of an accuracy that is measured here."""
-    return [one for one in rows if one.published.quantity == "accuracy" and one.our_deg is not None]
-
-
 def _beside(
     study: Study,
     published: ReportedAccuracy,

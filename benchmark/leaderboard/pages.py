@@ -1,4 +1,4 @@
-"""The leaderboard as files: JSON, CSV, Markdown and HTML of everything, and a page of the best.
+"""The leaderboard as files: JSON, CSV and HTML of everything, and a page of the best in Markdown.
 
 Only the page of the best is committed; the others are derived where they are wanted.
 """
@@ -15,7 +15,6 @@ from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
 from benchmark.results.csv_tables import format_cell, text_of
-from benchmark.sweeps import sweep_tables
 from files.atomic import replace_file
 from files.csv_writing import escape_formulas
 from registry.taxonomy import taxonomy_row
@@ -29,7 +28,7 @@ PAGE = "leaderboard.md"
 _TEMPLATES = Path(__file__).parent / "templates"
 _SHARES = ("availability", "false_detection_rate")
 
-#: Columns of the Markdown and HTML tables; the JSON and CSV files have all.
+#: Columns of the HTML tables; the JSON and CSV files have all.
 SHOWN = {
     "rank": "#",
     "extractor": "Extractor",
@@ -188,28 +187,12 @@ def _join(row: Row) -> str | None:
     return None if errors is None else ";".join(format_cell(error) for error in errors)
 
 
-def to_markdown(board: Board) -> str:
-    """Write every table as Markdown."""
-    lines = ["# Leaderboard", "", LEGEND, ""]
-    for dataset, conditions in _tables(board):
-        architecture = f"{dataset['detector']}, {dataset['mask']}; version {dataset['version']}"
-        lines += [f"## {dataset['name']}", "", architecture, ""]
-        if dataset["idealisation"]:
-            lines += [f"An idealisation: {dataset['idealisation']}", ""]
-        for condition in conditions:
-            lines += [f"### {condition['name']}", "", f"| {' | '.join(SHOWN.values())} |"]
-            lines.append("|" + "|".join(_rule(column) for column in SHOWN) + "|")
-            for row in condition["rows"]:
-                lines.append(f"| {' | '.join(text for _, text in row['columns'])} |")
-            unscored = [row for row in condition["rows"] if row["reason"]]
-            lines += ["", *(f"No score: {row['cell']}: {row['reason']}" for row in unscored)]
-            lines += [""] if unscored else []
-    lines += sweep_tables.to_markdown(board["sweeps"])
-    return "\n".join(lines).rstrip("\n") + "\n"
-
-
-def _rule(column: str) -> str:
-    return " --- " if column in ("extractor", "model") else " ---: "
+def sweeps_csv(board: Board) -> str:
+    """Write every row and column of the sweeps as CSV."""
+    rows = board["sweeps"]
+    columns = dict.fromkeys(("series", "sweep", "point", "extractor"))
+    columns |= dict.fromkeys(column for row in rows for column in row)
+    return text_of(list(columns), map(taxonomy_row, rows))
 
 
 def to_html(board: Board, *, marked: Collection[tuple[str, str]] = (), note: str = "") -> str:
@@ -240,9 +223,6 @@ def to_html(board: Board, *, marked: Collection[tuple[str, str]] = (), note: str
         note=note,
         headings=SHOWN,
         legend=LEGEND,
-        sweeps=sweep_tables.tables(board["sweeps"]),
-        unmeasured=sweep_tables.unmeasured_settings(board["sweeps"]),
-        sweep_legend=sweep_tables.LEGEND,
     )
 
 
@@ -277,9 +257,9 @@ def _tables(
 FORMATS: Mapping[str, Callable[[Board], str]] = {
     "leaderboard.json": to_json,
     "leaderboard.csv": to_csv,
-    "leaderboard.md": to_markdown,
+    PAGE: page,
     "leaderboard.html": to_html,
-    "sweeps.csv": lambda board: sweep_tables.to_csv(board["sweeps"]),
+    "sweeps.csv": sweeps_csv,
 }
 
 

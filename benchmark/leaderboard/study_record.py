@@ -16,7 +16,6 @@ from benchmark.contract import Cell
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.check import Difference
-from benchmark.leaderboard.consistency import contradictions
 from benchmark.leaderboard.update import measure_scope
 from benchmark.plan.combinations import study_plans
 from benchmark.plan.parts import Parts, study_parts
@@ -24,7 +23,6 @@ from benchmark.plan.shown import data_sets
 from benchmark.progress import ProgressCallback
 from benchmark.results.store import PUBLISHED_STUDIES, Store
 from benchmark.running.runner import Summary
-from files.atomic import temporary_directory
 from registry.resolution import resolve
 from registry.studies import facts
 
@@ -102,13 +100,9 @@ def check(
     With this machine's kernels. Parameters and errors as `benchmark.leaderboard.check.check`.
     """
     store, known = Store(directory), parts or study_parts()
-    found = [
-        *checking.by_hand(store),
-        *(Difference(*pair) for pair in contradictions(store, known)),
-        *checking.outdated(store, known, published_scope(store.scores(), known)),
-    ]
+    wanted = published_scope(store.scores(), known)
+    found = list(checking.differences_of_files(store, known, wanted))
     if stored_only:
         return found
-    with temporary_directory() as temporary:
-        update(temporary, workers, progress, parts=known)
-        return [*found, *checking.compare(store, Store(temporary), checking.NATIVE)]
+    measure = partial(update, workers=workers, progress=progress, parts=known)
+    return [*found, *checking.measured_again(store, measure)]

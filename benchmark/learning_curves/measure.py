@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,6 @@ from algorithms.chain import Scored
 from algorithms.contract import Context, Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
 from algorithms.threads import one_thread
-from benchmark.contract import Preset
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
 from benchmark.learning_curves.draws import Rows, sizes, subsets
@@ -26,6 +25,9 @@ from benchmark.learning_curves.leaders import Leader
 from benchmark.metrics.score import score
 from benchmark.running.fitting import reason_of
 from benchmark.simulator.light.memory import memory
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Units of the sensor, and draws of poses on each of them.
 UNITS = (0, 1)
@@ -35,7 +37,7 @@ _SPLITS = ("calibration", "test")
 
 
 @dataclass(frozen=True)
-class Task:
+class CurveTask:
     """A data set's leaders, in order, with what they are made of.
 
     Attributes
@@ -98,7 +100,7 @@ class _Part:
     context: Context | None
 
 
-def measure(task: Task) -> list[CurveErrors]:
+def measure(task: CurveTask) -> list[CurveErrors]:
     """Calibrate every leader of a data set on every subset of poses, and score it.
 
     Raises
@@ -135,7 +137,7 @@ def measure(task: Task) -> list[CurveErrors]:
         ]
 
 
-def _observable(task: Task, condition: str) -> NDArray[np.bool_] | None:
+def _observable(task: CurveTask, condition: str) -> NDArray[np.bool_] | None:
     """Test samples (N,) whose direction is observable, for every unit; None for all."""
     if task.all_observable:
         return None
@@ -163,7 +165,7 @@ class _Trial:
 
     extractor: Extractor
     model: Scored
-    task: Task
+    task: CurveTask
     known: _Part
     asked: _Part
     observable: NDArray[np.bool_] | None

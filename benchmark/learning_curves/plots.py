@@ -14,7 +14,6 @@ from benchmark.panels import (
     INK,
     PURPLE,
     VERMILION,
-    Layout,
     annotate,
     bound_style,
     dots,
@@ -31,18 +30,9 @@ if TYPE_CHECKING:
 Row = Mapping[str, Any]
 
 _ABOUT = "Own error of each data set's leaders against the poses that calibrate them"
-_LAYOUT = Layout(
-    width=236,
-    height=224,
-    left=44,
-    right=12,
-    top=66,
-    bottom=30,
-    head=78,
-    foot=22,
-    explained=39,
-    legend=49,
-)
+_SIZE_IN = (3.3, 3.1)
+#: Where names begin, points from the axes.
+_LEFT = -38
 _PLACES = (BLUE, VERMILION, GREEN)
 _BENCH_DASHES = (0, (6, 2, 1, 2))
 _DOT = 6.6
@@ -68,38 +58,26 @@ def picture(rows: Sequence[Row]) -> str:
 def figure(rows: Sequence[Row]) -> Figure:
     """Draw the same as a figure of Matplotlib."""
     return panel_figure(
-        _LAYOUT,
         [list(group) for _, group in groupby(rows, key=lambda r: r["dataset"])],
         _fill,
+        size=_SIZE_IN,
         title="Own error against calibration poses, leaders of every data set",
         explained="across: calibration poses with true directions; upwards: rms error over the "
         "test split, degrees; line: median of the draws on two units, band: least to largest",
         legend=_legend(),
-        handle=2.0,
     )
 
 
 def _fill(axes: Axes, leaders: Sequence[Row]) -> None:
-    left = 6 - _LAYOUT.left
-    annotate(axes, leaders[0]["dataset"], (left, 49), size=11.5, weight="bold", color=INK)
+    annotate(axes, leaders[0]["dataset"], (_LEFT, 49), size=11.5, weight="bold", color=INK)
     low, high = _limits(leaders)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(3.6, leaders[0]["poses"] * 1.12)
     axes.set_ylim(low, high)
-    exponents = [e for e in range(-7, 4) if low <= 10.0**e <= high]
-    heights = [10.0**e for e in exponents]
-    if len(heights) < 2:
-        heights = sorted(
-            step * 10.0**e
-            for e in range(-7, 4)
-            for step in (1, 2, 5)
-            if low <= step * 10.0**e <= high
-        )
-    axes.set_yticks(heights, [f"{value:g}" for value in heights])
     places = [p for p in (5, 20, 100, 500, 2000) if p <= leaders[0]["poses"]]
     axes.set_xticks(places, [str(p) for p in places])
-    rule(axes, heights)
+    rule(axes, axes.get_yticks())
     _bound(axes, leaders[0], low)
     bench = leaders[0]["bench_deg"]
     if bench and low <= bench <= high:
@@ -108,7 +86,7 @@ def _fill(axes: Axes, leaders: Sequence[Row]) -> None:
         end = row["points"][-1]["middle_deg"]
         away = f" ({end:.2g} deg, above)" if end and end > high else ""
         label = f"{row['extractor']} + {row['model']}{away}"
-        annotate(axes, label, (left, 37 - 11.5 * (row["place"] - 1)), size=9.5, color=colour)
+        annotate(axes, label, (_LEFT, 37 - 11.5 * (row["place"] - 1)), size=9.5, color=colour)
         _curve(axes, row, colour, high)
 
 

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import TYPE_CHECKING
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, FeatureKind, UnsuitableDesignError
-from benchmark.contract import Cell, Preset, UnknownNameError
+from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.parts import Parts, installed_parts, study_parts
 from registry.taxonomy import Plan
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 Names = str | Iterable[str] | None
 

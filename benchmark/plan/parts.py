@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor
-from benchmark.contract import Cell, Preset, UnknownNameError
+from benchmark.contract import Cell, UnknownNameError
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 
 @dataclass(frozen=True)

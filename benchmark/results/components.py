@@ -11,11 +11,11 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, Field
 
-from benchmark.contract import ON_BENCH, Cell, Preset
+from benchmark.contract import ON_BENCH, Cell
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
 from benchmark.results.digests import (
@@ -28,6 +28,9 @@ from benchmark.results.digests import (
 )
 from benchmark.results.modules import STAGES, reached
 from files.reading import FileRefusedError, read_json, require_type
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 3

@@ -5,12 +5,15 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator, Mapping
 from types import FunctionType
+from typing import TYPE_CHECKING
 
 from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor
 from benchmark.canonical import digest
-from benchmark.contract import Preset
 from benchmark.results.modules import FIRST_PARTY, STAGES, modules_digest
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Digits of a component's digest: two of a hundred components meet once in 1e15.
 DIGITS = 16

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,7 +19,6 @@ from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor, Observation, UnusableDataError
 from algorithms.pipeline import Pipeline, extract_features
 from algorithms.threads import one_thread
-from benchmark.contract import Preset
 from benchmark.datasets.corrected import correct, correction
 from benchmark.datasets.preset import Preset as SimulatedPreset
 from benchmark.plan.combinations import cells
@@ -26,6 +26,9 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, silent
 from benchmark.running.workers import as_completed
 from benchmark.simulator.sensors.line_sensor import LineSensor
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Samples of a split that are generated for a sensor's kernels, and that an extractor reads.
 _MADE, _READ = 1, 2

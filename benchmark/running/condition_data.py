@@ -10,13 +10,13 @@ import time
 from collections import OrderedDict
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.canonical import digest
-from benchmark.contract import SPLITS, Bound, Cell, Preset, Samples
+from benchmark.contract import SPLITS, Cell
 from benchmark.datasets.controls import board_facts
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.pins import Pin
@@ -27,6 +27,11 @@ from benchmark.running.kept_stages import DATA, TRUTH, KeptStages
 from benchmark.running.readings import correct_readings
 from benchmark.running.stages import ConditionData, RenderedData
 from benchmark.simulator.light.memory import LIMIT_BYTES, memory
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.datasets.samples import Samples
+    from benchmark.metrics.bounds import Bound
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
 _KEPT = 2

@@ -149,7 +149,7 @@ class Report(Experiment[C]):
 
 
 @dataclass(frozen=True)
-class Summary:
+class ExperimentSummary:
     """What was done: cells in all, and measured now; seconds."""
 
     planned: int
@@ -214,7 +214,7 @@ def update(
     progress: ProgressCallback | None = None,
     *,
     only: Collection[C] | None = None,
-) -> Summary:
+) -> ExperimentSummary:
     """Measure what is due, drop what is no longer wanted, write the file.
 
     It is written after every task, so that a call that is broken off is gone on with.
@@ -257,7 +257,7 @@ def update(
             record.write(rows, directory)
         if rows.keys() != stored.keys():
             record.write(rows, directory)
-    return Summary(len(keys), len(missing), time.perf_counter() - started)
+    return ExperimentSummary(len(keys), len(missing), time.perf_counter() - started)
 
 
 def measure_tasks(

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
-from benchmark.contract import ON_BENCH, Preset
+from benchmark.contract import ON_BENCH
 from benchmark.datasets.benches import report
 from benchmark.running.stages import Answers, ConditionData, Task
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Benches that each unit of a leading pipeline is calibrated on beside a perfect one.
 BENCHES = 2

@@ -18,7 +18,7 @@ from benchmark.running.stages import Answers, ConditionData, Task
 
 
 @dataclass(frozen=True)
-class Outcome:
+class PipelineOutcome:
     """What came of one model: a score, or the reason there is none.
 
     `refused`: the model's ``fit`` raised UnusableDataError, its contract's word for data it cannot
@@ -36,13 +36,15 @@ class Outcome:
     found: NDArray[np.bool_] | None = None
 
 
-def score_answers(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
+def score_answers(
+    task: Task, model: Scored, answers: Answers, data: ConditionData
+) -> PipelineOutcome:
     """Judge what a pipeline answered."""
     name = model.about.name
     if answers.refused:
-        return Outcome(name, answers.refused, refused=True)
+        return PipelineOutcome(name, answers.refused, refused=True)
     if task.condition == ON_BENCH:
-        return Outcome(name, "", _pooled(answers, data))
+        return PipelineOutcome(name, "", _pooled(answers, data))
     test, (own,) = data.splits["test"], answers.test
     posterior = _posterior_deg(task, model, data)
     found = score(
@@ -54,9 +56,9 @@ def score_answers(task: Task, model: Scored, answers: Answers, data: ConditionDa
         bound_unit_deg=data.bound_unit_deg if posterior is None else posterior,
     )
     if task.condition != task.preset.conditions[0]:
-        return Outcome(name, "", found)
+        return PipelineOutcome(name, "", found)
     errors = separation_deg(own, test.sun)
-    return Outcome(name, "", found, sample_errors_deg=errors, found=answers.found)
+    return PipelineOutcome(name, "", found, sample_errors_deg=errors, found=answers.found)
 
 
 def _pooled(answers: Answers, data: ConditionData) -> Score:

@@ -13,9 +13,10 @@ from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from algorithms.threads import one_thread
-from benchmark.contract import SPLITS, Preset, UnknownNameError
+from benchmark.contract import SPLITS, UnknownNameError
 from benchmark.datasets.pins import Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash
 from benchmark.plan.parts import Parts, installed_parts
@@ -27,6 +28,9 @@ from benchmark.running.condition_data import generated_pins, rms_bound
 from benchmark.running.fitting import reason_of
 from benchmark.running.workers import as_completed
 from benchmark.simulator.light.memory import memory
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 Condition = tuple[str, str]  # (dataset, condition)
 

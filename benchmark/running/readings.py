@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from algorithms.contract import Extractor, Floats
 from algorithms.pipeline import extract_features
 from algorithms.references import ReferenceCorrection
-from benchmark.contract import Preset, Samples
 from benchmark.datasets.corrected import correct
 from benchmark.running.stages import ConditionData, RenderedData
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.datasets.samples import Samples
 
 #: Bytes from which on corrected observations are not kept but made again for each extractor, some
 #: samples at a time: so few that they are still in a processor's cache when they are looked at,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,12 @@ from numpy.typing import NDArray
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats
 from algorithms.references import ReferenceCorrection
-from benchmark.contract import Bound, Preset, Samples
 from benchmark.datasets.pins import Pin
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
+    from benchmark.datasets.samples import Samples
+    from benchmark.metrics.bounds import Bound
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from benchmark.datasets.pins import Pin
 from benchmark.processes import release_free_memory
 from benchmark.running.condition_data import generate, truth
 from benchmark.running.fitting import data_condition, fit_and_predict, reason_of
-from benchmark.running.judging import Outcome, score_answers
+from benchmark.running.judging import PipelineOutcome, score_answers
 from benchmark.running.kept_stages import FEATURES, PREDICTIONS, KeptStages
 from benchmark.running.readings import found_features
 from benchmark.running.stages import Answers, ConditionData, Task
@@ -37,7 +37,7 @@ class TaskResult:
 
     task: Task
     pins: tuple[Pin, ...]
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[PipelineOutcome, ...]
     directions: tuple[Floats, NDArray[np.bool_], Floats] | None = None
 
 
@@ -82,24 +82,24 @@ def measured_on(
     data: ConditionData,
     *,
     kept: KeptStages | None = None,
-) -> Outcome:
+) -> PipelineOutcome:
     """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
     started = time.process_time()
     try:
         answers = fit_and_predict(task, extractor, model, features, data)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
-        return Outcome(model.about.name, reason_of(error))
+        return PipelineOutcome(model.about.name, reason_of(error))
     if kept is not None:
         seconds = time.process_time() - started
         kept.put(PREDICTIONS, _cell(task, model), answers, seconds)
     return _judged(task, model, answers, data)
 
 
-def _judged(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
+def _judged(task: Task, model: Scored, answers: Answers, data: ConditionData) -> PipelineOutcome:
     try:
         return score_answers(task, model, answers, data)
     except Exception as error:  # noqa: BLE001 - likewise of what it answers
-        return Outcome(model.about.name, reason_of(error))
+        return PipelineOutcome(model.about.name, reason_of(error))
 
 
 def _data(task: Task, look: Callable[..., ConditionData], kept: KeptStages | None) -> ConditionData:
@@ -143,4 +143,6 @@ def _cell(task: Task, model: Scored | None = None) -> Cell:
 
 def _failed(task: Task, error: Exception, doing: str, pins: tuple[Pin, ...] = ()) -> TaskResult:
     reason = f"{doing}: {reason_of(error)}"
-    return TaskResult(task, pins, tuple(Outcome(model.about.name, reason) for model in task.models))
+    return TaskResult(
+        task, pins, tuple(PipelineOutcome(model.about.name, reason) for model in task.models)
+    )

@@ -19,7 +19,7 @@ from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Sample, Serie
 
 
 @dataclass(frozen=True)
-class Task:
+class SweepTask:
     """What sees the observations of one point.
 
     Attributes
@@ -37,7 +37,7 @@ class Task:
     refused: Mapping[Point, str]
 
 
-def measure(task: Task) -> list[tuple[Point, Row]]:
+def measure(task: SweepTask) -> list[tuple[Point, Row]]:
     """Measure methods at one point, each on the same observations."""
     rows = [
         (point, _row(point, None, task.extractors[point]) | {"reason": reason})

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from benchmark.panels import (
@@ -12,7 +11,6 @@ from benchmark.panels import (
     FAINT,
     INK,
     VERMILION,
-    Layout,
     annotate,
     bound_style,
     dots,
@@ -34,32 +32,9 @@ Row = Mapping[str, Any]
 DRAWN = ("noise", "size", "phase")
 _LINEAR = frozenset({"phase"})
 
-_LAYOUT = Layout(
-    width=214,
-    height=172,
-    left=46,
-    right=10,
-    top=36,
-    bottom=30,
-    head=58,
-    foot=20,
-    explained=-9,
-    legend=33,
-)
+_SIZE_IN = (2.9, 2.4)
 _ERROR, _BOUND = BLUE, VERMILION
 _WIDTH = 1.6
-
-
-@dataclass(frozen=True)
-class _Panel:
-    name: str
-    series: str
-    about: str
-    unit: str
-    places: tuple[float, ...]
-    errors: tuple[float | None, ...]
-    bounds: tuple[float | None, ...]
-    complete: tuple[bool, ...]
 
 
 def picture(rows: Sequence[Row], sweep: str) -> str:
@@ -76,89 +51,51 @@ def figure(rows: Sequence[Row], sweep: str) -> Figure:
     """Draw the same as a figure of Matplotlib."""
     if sweep not in DRAWN:
         raise ValueError(f"sweep must be one of {', '.join(DRAWN)}; got {sweep!r}")
-    panels = _panels(rows, sweep)
-
-    def fill(axes: Axes, panel: _Panel) -> None:
-        alike = [other for other in panels if other.series == panel.series]
-        values = [v for other in alike for v in (*other.errors, *other.bounds) if v]
-        _fill(axes, panel, sweep, _decades(values))
-
+    drawn = [row for row in rows if row["sweep"] == sweep and row["value"] is not None]
+    order = [*SERIES]
+    drawn.sort(key=lambda row: (order.index(row["series"]), row["extractor"], row["value"]))
+    by_panel = groupby(drawn, key=lambda row: (row["series"], row["extractor"]))
+    heights: dict[str, list[float]] = {}
+    for row in drawn:
+        heights.setdefault(row["series"], []).extend(filter(None, (row["rms"], row["bound"])))
     return panel_figure(
-        _LAYOUT,
-        panels,
-        fill,
+        [list(group) for _, group in by_panel],
+        lambda axes, panel: _fill(axes, panel, heights[panel[0]["series"]]),
+        size=_SIZE_IN,
         title=f"Error against {SWEEPS[sweep]}",
         explained=f"across: {SWEEPS[sweep]}; upwards: rms error of one coordinate, in the unit "
         "named",
         legend=_legend(),
-        handle=2.4,
     )
 
 
-def _panels(rows: Sequence[Row], sweep: str) -> list[_Panel]:
-    found: dict[tuple[str, str, str], list[Row]] = {}
-    for row in rows:
-        if row["sweep"] == sweep and row["value"] is not None:
-            key = (row["series"], row["extractor"], row["extractor_taxonomy"])
-            found.setdefault(key, []).append(row)
-    order = [*SERIES]
-    panels = []
-    for (series, extractor, taxonomy), group in sorted(
-        found.items(), key=lambda item: (order.index(item[0][0]), item[0][1])
-    ):
-        points = sorted(group, key=lambda row: row["value"])
-        panels.append(
-            _Panel(
-                extractor,
-                series,
-                series if taxonomy == "None" else f"{taxonomy}, {series}",
-                points[0]["unit"],
-                tuple(row["value"] for row in points),
-                tuple(row["rms"] for row in points),
-                tuple(row["bound"] for row in points),
-                tuple((row["found_fraction"] or 0.0) >= 0.9 for row in points),
-            )
-        )
-    return panels
-
-
-def _fill(axes: Axes, panel: _Panel, sweep: str, decades: tuple[int, int]) -> None:
-    annotate(axes, panel.name, (0, 19), size=11.5, weight="bold", color=INK)
-    annotate(axes, f"{panel.about} ({panel.unit})", (0, 7), size=10, color=FAINT)
-    low, high = decades
+def _fill(axes: Axes, rows: Sequence[Row], heights: Sequence[float]) -> None:
+    """Draw a method's rows of one sweep, as high as all errors and bounds of the series."""
+    first = rows[0]
+    taxonomy = "" if first["extractor_taxonomy"] == "None" else f"{first['extractor_taxonomy']}, "
+    annotate(axes, first["extractor"], (0, 19), size=11.5, weight="bold", color=INK)
+    about = f"{taxonomy}{first['series']} ({first['unit']})"
+    annotate(axes, about, (0, 7), size=10, color=FAINT)
     axes.set_yscale("log")
-    axes.set_ylim(10.0**low, 10.0**high)
-    exponents = range(low, high + 1, 1 if high - low < 5 else 2)
-    axes.set_yticks([10.0**e for e in exponents], [_power(e) for e in exponents])
-    first, last = min(panel.places), max(panel.places)
-    if sweep in _LINEAR:
-        room = (last - first) * 0.04
-        axes.set_xlim(first - room, last + room)
-    else:
+    if heights:
+        axes.set_ylim(min(heights) / 2.0, max(heights) * 2.0)
+    if first["sweep"] not in _LINEAR:
         axes.set_xscale("log")
-        axes.set_xlim(first / 1.12, last * 1.12)
-    places = _ticks(panel.places, sweep)
-    axes.set_xticks(places, [f"{place:g}" for place in places])
-    rule(axes, [10.0**e for e in range(low, high + 1)])
-    _curve(axes, panel.places, panel.bounds, **bound_style(_BOUND, _WIDTH))
-    if not any(panel.errors):
-        axes.text(
-            0.5,
-            0.5,
-            "nothing found",
-            transform=axes.transAxes,
-            size=10,
-            color=FAINT,
-            ha="center",
-            va="center",
-        )
-    _curve(axes, panel.places, panel.errors, color=_ERROR, linewidth=_WIDTH)
+    places = [row["value"] for row in rows]
+    shown = places[:: 1 + len(places) // 5]
+    axes.set_xticks(shown, [f"{place:g}" for place in shown])
+    rule(axes, axes.get_yticks())
+    _curve(axes, places, [row["bound"] for row in rows], **bound_style(_BOUND, _WIDTH))
+    errors = [row["rms"] for row in rows]
+    if not any(errors):
+        annotate(axes, "nothing found", (20, -40), size=10, color=FAINT)
+    _curve(axes, places, errors, color=_ERROR, linewidth=_WIDTH)
+    complete = [(row["found_fraction"] or 0.0) >= 0.9 for row in rows]
     for whole in (True, False):
         chosen = [
-            error if complete is whole else None
-            for error, complete in zip(panel.errors, panel.complete, strict=True)
+            error if found is whole else None for error, found in zip(errors, complete, strict=True)
         ]
-        _curve(axes, panel.places, chosen, **_dots(whole=whole), linewidth=_WIDTH)
+        _curve(axes, places, chosen, **_dots(whole=whole), linewidth=_WIDTH)
 
 
 def _curve(
@@ -182,22 +119,3 @@ def _legend() -> list[Line2D]:
         Line2D([], [], label="less than 90 % found", **_dots(whole=False)),
         Line2D([], [], label="Cramer-Rao bound", **bound_style(_BOUND, _WIDTH)),
     ]
-
-
-def _decades(values: Sequence[float]) -> tuple[int, int]:
-    """Return exponents of the whole powers of ten around positive values."""
-    if not values:
-        return -1, 0
-    low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
-    return low, max(high, low + 1)
-
-
-def _ticks(places: Sequence[float], sweep: str) -> list[float]:
-    if sweep == "noise":
-        return [place for place in (5.0, 20.0, 100.0, 500.0) if min(places) <= place <= max(places)]
-    return list(places)[::2] if len(places) > 5 else list(places)
-
-
-def _power(exponent: int) -> str:
-    digits = str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"10{digits}"

@@ -126,7 +126,8 @@ def leaderboard(
         Kernels | None,
         typer.Option(
             help=(
-                "With --check: kernels of this processor, of an older processor, or both (default)."
+                "With --check: kernels of this processor, an older one, or both (default); sensors "
+                "of single studies are measured with this processor's."
             ),
             show_default=False,
         ),
@@ -283,7 +284,8 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
     how = (
         "the files agree with each other and the code"
         if stored_only
-        else f"measured again with {' and '.join(kernels)} kernels"
+        else f"data sets of the leaderboard measured again with {' and '.join(kernels)} kernels, "
+        "sensors of single studies with native ones"
     )
     typer.echo(f"every published number holds: {how}", err=True)
 

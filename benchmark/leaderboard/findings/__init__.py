@@ -10,17 +10,19 @@ from benchmark.leaderboard.findings.constants import constants
 from benchmark.leaderboard.findings.finding import Estimate, Finding
 from benchmark.leaderboard.findings.methods import methods
 from benchmark.leaderboard.findings.poses import poses
-from benchmark.leaderboard.findings.record import Record
+from benchmark.leaderboard.findings.record import FindingsRecord
 from benchmark.leaderboard.findings.sources import sources
 from benchmark.learning_curves.record import published_curves
 from registry.resolution import Resolution
 
-__all__ = ["KEYS", "Estimate", "Finding", "Record", "findings_of"]
+__all__ = ["KEYS", "Estimate", "Finding", "FindingsRecord", "findings_of"]
 
 KEYS = ("methods", "constants", "benches", "sources", "poses")
 
 
-def findings_of(record: Record, resolutions: Mapping[str, Resolution]) -> tuple[Finding, ...]:
+def findings_of(
+    record: FindingsRecord, resolutions: Mapping[str, Resolution]
+) -> tuple[Finding, ...]:
     """Return the five findings, in the order of `KEYS`.
 
     Parameters

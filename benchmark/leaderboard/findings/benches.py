@@ -7,10 +7,10 @@ from typing import Any
 
 from benchmark.contract import Cell
 from benchmark.leaderboard.findings.finding import Estimate, Finding, number
-from benchmark.leaderboard.findings.record import Record, geometric_mean, shared
+from benchmark.leaderboard.findings.record import FindingsRecord, geometric_mean, shared
 
 
-def benches(record: Record) -> Finding:
+def benches(record: FindingsRecord) -> Finding:
     """Compare the best pipeline calibrated on drawn benches with itself on true directions."""
     leading: dict[str, Cell] = {}
     for cell in sorted(record.on_bench, key=lambda cell: (record.own_error_deg(cell), cell)):
@@ -57,7 +57,7 @@ def benches(record: Record) -> Finding:
     )
 
 
-def _pair(record: Record, cell: Cell) -> dict[str, Any]:
+def _pair(record: FindingsRecord, cell: Cell) -> dict[str, Any]:
     bench = record.bench_deg[cell.dataset]
     own = record.own_error_deg(cell)
     both = list(shared(record.on_bench[cell], record.errors[cell]))
@@ -84,6 +84,6 @@ def _cut(ratio: Estimate) -> str:
     return f"{number(middle)} % ({number(low)} to {number(high)} %)"
 
 
-def _benches(record: Record) -> str:
+def _benches(record: FindingsRecord) -> str:
     errors = sorted(set(record.bench_deg.values()))
     return " or ".join(f"{number(error)} deg" for error in errors)

@@ -9,13 +9,13 @@ from typing import Any
 from benchmark.contract import Cell
 from benchmark.leaderboard.board import NOMINAL
 from benchmark.leaderboard.findings.finding import Estimate, Finding, number
-from benchmark.leaderboard.findings.record import Record, shared
+from benchmark.leaderboard.findings.record import FindingsRecord, shared
 
 #: The projection with the constants of the drawing, and the same one with fitted constants.
 DRAWN, FITTED = "spm", "pinhole"
 
 
-def constants(record: Record) -> Finding:
+def constants(record: FindingsRecord) -> Finding:
     """Compare a projection as drawn with the same one fitted on a bench, behind each extractor.
 
     The extractors of a data set share its sensor, so that it counts once, with their median.
@@ -54,7 +54,7 @@ def constants(record: Record) -> Finding:
     )
 
 
-def _pair(record: Record, drawn: Cell, fitted: Cell) -> dict[str, Any]:
+def _pair(record: FindingsRecord, drawn: Cell, fitted: Cell) -> dict[str, Any]:
     bench = record.bench_deg[drawn.dataset]
     units = list(shared(record.errors[drawn], record.errors[fitted]))
     squares = [one**2 - two**2 for one, two in units]

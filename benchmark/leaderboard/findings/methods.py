@@ -11,7 +11,7 @@ from algorithms.chain import Chain
 from benchmark.contract import Cell
 from benchmark.leaderboard.board import NOMINAL
 from benchmark.leaderboard.findings.finding import Estimate, Finding, number
-from benchmark.leaderboard.findings.record import Record
+from benchmark.leaderboard.findings.record import FindingsRecord
 from registry.catalogue import catalogue
 from registry.resolution import Resolution
 from registry.studies import METHODS
@@ -31,7 +31,7 @@ class Use:
     chosen: bool
 
 
-def methods(record: Record, resolutions: Mapping[str, Resolution]) -> Finding:
+def methods(record: FindingsRecord, resolutions: Mapping[str, Resolution]) -> Finding:
     """Compare the best method of each study with the best one measured on the same data set.
 
     Pipelines that several studies share count once.
@@ -81,7 +81,7 @@ def _uses(resolutions: Mapping[str, Resolution]) -> Iterator[Use]:
                 yield Use(study, cell, chosen)
 
 
-def _steps(record: Record) -> tuple[tuple[Callable[[Use], bool], str], ...]:
+def _steps(record: FindingsRecord) -> tuple[tuple[Callable[[Use], bool], str], ...]:
     """Return what a use has to be, and how those are called that are not, in order."""
 
     def honest(use: Use) -> bool:
@@ -108,7 +108,7 @@ def _without(studies: set[str], said: str) -> str:
     return f"{len(studies)} {noun} {said}{named}" if studies else ""
 
 
-def _best_of_studies(record: Record, uses: list[Use]) -> Mapping[str, Cell]:
+def _best_of_studies(record: FindingsRecord, uses: list[Use]) -> Mapping[str, Cell]:
     """Return the pipeline of each study that is nearest to the best on its data set."""
     found: dict[str, tuple[float, Cell]] = {}
     for use in uses:
@@ -117,7 +117,7 @@ def _best_of_studies(record: Record, uses: list[Use]) -> Mapping[str, Cell]:
     return {study: cell for study, (_, cell) in found.items()}
 
 
-def _pair(record: Record, cell: Cell, studies: list[str]) -> dict[str, Any]:
+def _pair(record: FindingsRecord, cell: Cell, studies: list[str]) -> dict[str, Any]:
     best, bench = record.best[cell.dataset], record.bench_deg[cell.dataset]
     return {
         "dataset": cell.dataset,

@@ -21,7 +21,7 @@ ARRAYS = frozenset({"CCD", "CMOS", "PDA", "Event"})
 
 
 @dataclass(frozen=True)
-class Record:
+class FindingsRecord:
     """Scores under the first condition of each data set, by cell.
 
     Attributes
@@ -44,7 +44,7 @@ class Record:
     unavailable: frozenset[Cell]
 
     @classmethod
-    def published(cls, store: Store | None = None) -> Record:
+    def published(cls, store: Store | None = None) -> FindingsRecord:
         """Read the published record, or another store."""
         known = store or Store(PUBLISHED)
         every = known.rows(unit=None)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
 
 import pytest
 
 from algorithms.discovery import discover_extractors
 from benchmark.assessment import assess as assessment
-from benchmark.assessment import former
 from benchmark.assessment.assess import assess
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError
@@ -288,14 +286,3 @@ def test_what_is_not_judged_keeps_its_number_and_says_why(tmp_path):
     robust = found["Robust to noise"]
     assert (robust.measured, robust.value) == (0, None)
     assert re.findall(r"[\d.]+", robust.reason) == ["9", "50"]
-
-
-def test_the_first_version_s_outcomes_are_of_every_cell_and_stay_as_they_were():
-    scores = former.scores()
-    table = load().feature_assessment
-    cells = list(zip(table["extractor"], table["property"], table["score"], strict=True))
-    assert set(scores) == {(method, name) for method, name, _ in cells}
-    verdicts = Counter(former.agreement(*cell) for cell in cells)
-    assert verdicts == {"agrees": 177, "near": 35, "opposed": 105, "not measured": 82}
-    with pytest.raises(KeyError):
-        former.agreement("BCTM", "Beauty", 2)

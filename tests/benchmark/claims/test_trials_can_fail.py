@@ -69,7 +69,7 @@ def test_a_wrong_focal_length_or_a_bent_spot_refutes_the_main_error():
     def parts(**changed):
         like = {"misalignment": 0.3, "focal_length": 0.05, "neither": 0.003, "table": 0.003,
                 "dark": 0.003, "expansion": 0.003}  # fmt: skip
-        return c09.statistics(c09.Parts(**like | changed))
+        return c09.statistics(c09._Parts(**like | changed))
 
     good, long, bent = parts(), parts(focal_length=0.6), parts(neither=0.25, table=0.003)
     assert outcome_of("C09", [good] * 8)[1] == "reproduced"
@@ -81,9 +81,9 @@ def test_a_wrong_focal_length_or_a_bent_spot_refutes_the_main_error():
 
 def test_a_filter_that_its_gyroscope_misleads_is_refuted():
     """C24: its memory makes answers worse, and it is more hurt by noise than without."""
-    made = [c24.values(c24.Pair(0.6 + 0.01 * n, 0.5), c24.Pair(4.0, 3.0)) for n in range(8)]
+    made = [c24.values(c24._Pair(0.6 + 0.01 * n, 0.5), c24._Pair(4.0, 3.0)) for n in range(8)]
     assert outcome_of("C24", made) == ({"filter": "fails", "noise": "fails"}, "refuted")
-    made = [c24.values(c24.Pair(0.2, 0.5 + 0.01 * n), c24.Pair(1.0, 3.0)) for n in range(8)]
+    made = [c24.values(c24._Pair(0.2, 0.5 + 0.01 * n), c24._Pair(1.0, 3.0)) for n in range(8)]
     assert outcome_of("C24", made)[1] == "reproduced"
 
 
@@ -107,11 +107,11 @@ def test_true_directions_come_with_the_same_readings(preset):
 
 def test_an_assembly_that_is_better_left_alone_refutes():
     """C25: tracking makes a sensor worse that hardly drifts, and takes up none of the drift."""
-    still = c25.Pair(kept=0.10, tracked=0.20, kept_last=0.10, tracked_last=0.20)
-    moving = c25.Pair(kept=0.15, tracked=0.25, kept_last=0.15, tracked_last=0.25)
+    still = c25._Pair(kept=0.10, tracked=0.20, kept_last=0.10, tracked_last=0.20)
+    moving = c25._Pair(kept=0.15, tracked=0.25, kept_last=0.15, tracked_last=0.25)
     made = [c25.values(moving, still)] * 8
     assert outcome_of("C25", made) == ({"corrects": "fails", "drift": "fails"}, "refuted")
-    tracked = c25.Pair(kept=0.50, tracked=0.20, kept_last=0.50, tracked_last=0.20)
+    tracked = c25._Pair(kept=0.50, tracked=0.20, kept_last=0.50, tracked_last=0.20)
     assert outcome_of("C25", [c25.values(tracked, still)] * 8)[1] == "reproduced"
 
 

@@ -1,4 +1,4 @@
-"""Experiments that keep nothing: their cells, the lines that are printed, and exit codes."""
+"""Rows that are measured again: what is printed, and exit codes."""
 
 from __future__ import annotations
 
@@ -8,22 +8,9 @@ from pathlib import Path
 import pytest
 
 from benchmark.experiments import __main__ as command
-from benchmark.experiments.selection import Selection
 from benchmark.results.row_file import Row, RowFile
 from benchmark.running import experiment as running
 from benchmark.running.experiment import RecordedExperiment
-
-
-def test_a_choice_that_is_a_tenth_worse_than_the_best_fails() -> None:
-    plain = {"dataset": "d", "extractor": "e", "model": "m", "best_deg": 0.1}
-    settings = {"chosen": {"degree": 3}, "best": {"degree": 5}}
-    rows: dict[str, Row] = {
-        name: {"choices": [{**plain, **settings, "chosen_deg": error}]}
-        for name, error in (("near", 0.109), ("far", 0.12))
-    }
-    assert list(Selection().lines(rows))[1] == ("d e m 1.200 {'degree': 3} 0.12 {'degree': 5} 0.1")
-    assert Selection().passes({"near": rows["near"]})
-    assert not Selection().passes(rows)
 
 
 class Squares(RecordedExperiment[str]):

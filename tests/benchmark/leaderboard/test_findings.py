@@ -18,7 +18,7 @@ import pytest
 from api.deposit.derived_tables import resolution
 from benchmark.contract import Cell
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
-from benchmark.leaderboard.findings import Finding, Record, findings_of
+from benchmark.leaderboard.findings import Finding, FindingsRecord, findings_of
 from benchmark.leaderboard.findings.benches import benches
 from benchmark.leaderboard.findings.constants import constants
 from benchmark.leaderboard.findings.finding import number
@@ -38,7 +38,7 @@ SCRIPT = Path(__file__).parent / "recompute_findings.py"
 @pytest.fixture(scope="module")
 def published() -> Mapping[str, Finding]:
     resolutions = resolve_all(scorable_plan(), data_sets=data_sets())
-    return {one.key: one for one in findings_of(Record.published(), resolutions)}
+    return {one.key: one for one in findings_of(FindingsRecord.published(), resolutions)}
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +105,7 @@ def record_of(
     bench_deg: float = 0.0,
     detectors: Mapping[str, str] | None = None,
     answered_deg: Mapping[tuple[str, str, str], float] | None = None,
-) -> Record:
+) -> FindingsRecord:
     """A record of these errors by unit; `answered_deg` are errors without false Suns."""
 
     def cells(given: Errors) -> dict[Cell, UnitErrors]:
@@ -121,7 +121,7 @@ def record_of(
         for (d, e, m), values in errors.items()
     }
     pins = {dataset: bench_deg for dataset, _, _ in errors}
-    return Record(rows, cells(errors), cells(on_bench or {}), pins, frozenset())
+    return FindingsRecord(rows, cells(errors), cells(on_bench or {}), pins, frozenset())
 
 
 def study_of(*pipelines: tuple[str, str, str], basis: str = "stated") -> Resolution:

@@ -15,7 +15,7 @@ from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.learning_curves.draws import sizes
 from benchmark.learning_curves.floor import NEAR
 from benchmark.learning_curves.leaders import LEADING, Leader, leaders
-from benchmark.learning_curves.measure import DRAWS, UNITS, Task, measure
+from benchmark.learning_curves.measure import DRAWS, UNITS, CurveTask, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.reading import summary
 from benchmark.learning_curves.record import RECORD
@@ -34,7 +34,7 @@ def task(preset=None, *models):
     known = {model.about.name: model for model in models or (Lines,)}
     found = [replace(LEADER, place=place, model=name) for place, name in enumerate(known, start=1)]
     extractors = {"fake-readings": Readings}
-    return Task(
+    return CurveTask(
         preset or Plane(), tuple(found), extractors, known, True, dict.fromkeys(found, BOUND), BENCH
     )
 

@@ -13,7 +13,7 @@ import pytest
 from benchmark.contract import Cell
 from benchmark.results.samples import CONDITION
 from benchmark.running import condition_data
-from benchmark.running.judging import Outcome
+from benchmark.running.judging import PipelineOutcome
 from benchmark.running.planned import samples_of
 from benchmark.running.stages import Task
 from benchmark.running.task import TaskResult, measure
@@ -28,7 +28,7 @@ def _memory_is_empty() -> Iterator[None]:
     memory.forget()
 
 
-def measured(preset: Any, *models: Any, unit: int = 0) -> tuple[Outcome, ...]:
+def measured(preset: Any, *models: Any, unit: int = 0) -> tuple[PipelineOutcome, ...]:
     extractor: Any = fake_atlas.Currents
     task = Task(preset, "quiet", extractor, models or (fake_atlas.LeastSquares,), unit)
     return measure(task).outcomes
@@ -88,7 +88,7 @@ class Flown(fake_atlas.Diodes):
         return 0.5 * bound.angle_deg
 
 
-def bounds(outcome: Outcome) -> tuple[float, float]:
+def bounds(outcome: PipelineOutcome) -> tuple[float, float]:
     assert outcome.score is not None
     return outcome.score.bound_deg, outcome.score.bound_unit_deg
 
@@ -105,7 +105,7 @@ def test_errors_of_samples_are_kept_of_the_condition_that_shows_them_and_of_no_f
     preset = fake_atlas.Diodes(conditions=(CONDITION,))
     task = Task(preset, CONDITION, fake_atlas.Currents, ())
     errors, found = np.array([0.1, 0.2]), np.array([True, True])
-    good = Outcome("fake-least-squares", "", sample_errors_deg=errors, found=found)
+    good = PipelineOutcome("fake-least-squares", "", sample_errors_deg=errors, found=found)
     result = TaskResult(task, (), (good, replace(good, sample_errors_deg=None)))
     (kept,) = samples_of(replace(result, outcomes=(good,))).cells.values()
     (cell,) = samples_of(result).cells

@@ -16,7 +16,7 @@ from algorithms.contract import (
 )
 from benchmark.sweeps import plan
 from benchmark.sweeps.differences import differences
-from benchmark.sweeps.measure import Task, measure
+from benchmark.sweeps.measure import SweepTask, measure
 from benchmark.sweeps.points import Point
 from benchmark.synthetic_features.series import SeriesPoint
 
@@ -64,7 +64,7 @@ def setting_of(sweep: str, point: str) -> SeriesPoint:
 def measured(extractor: type[Lines], sweep: str, point: str) -> dict[str, Any]:
     place = Point("slit", sweep, point, extractor.about.name)
     extractors = {place: cast("Any", extractor)}
-    ((at, row),) = measure(Task(extractors, setting_of(sweep, point), {}))
+    ((at, row),) = measure(SweepTask(extractors, setting_of(sweep, point), {}))
     assert at == place
     return dict(row)
 

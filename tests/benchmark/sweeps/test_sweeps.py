@@ -20,7 +20,6 @@ from benchmark.progress import silent
 from benchmark.running.experiment import list_due, update
 from benchmark.sweeps import plan as sweep_plan
 from benchmark.sweeps import plots as sweep_pictures
-from benchmark.sweeps import sweep_tables
 from benchmark.sweeps.record import RECORD, swept
 from benchmark.synthetic_features.series import SWEEPS
 
@@ -88,9 +87,9 @@ def test_points_are_measured_failures_named_and_misfits_listed(made):
     assert len(rows) == 1 + 2 * POINTS
     reasons = {row["reason"] for row in rows if row["status"] == "failed"}
     assert reasons == {"RuntimeError: no light"}
-    ((sensor, method, reason),) = sweep_tables.unmeasured_settings(rows)
-    assert (sensor, method) == ("", "spots-of-readings")
-    assert re.search(r"\bcurrents\b.*\bspot\b", reason)
+    (unmeasured,) = (row for row in rows if not row["sweep"])
+    assert (unmeasured["series"], unmeasured["extractor"]) == ("", "spots-of-readings")
+    assert re.search(r"\bcurrents\b.*\bspot\b", unmeasured["reason"])
 
 
 def test_the_closed_form_of_balances_is_at_the_bound(made):

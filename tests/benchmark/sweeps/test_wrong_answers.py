@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observation
-from benchmark.sweeps.measure import Task, measure
+from benchmark.sweeps.measure import SweepTask, measure
 from benchmark.sweeps.plan import SERIES, plan_points
 from benchmark.sweeps.points import Point
 from benchmark.synthetic_features.series import WRONG_PX
@@ -34,7 +34,7 @@ def row_of(point, answers, frames=40):
     """Measure given answers to the first frames of a set."""
     setting = dataclasses.replace(SETTINGS[point], frames=frames)
     place = Point("frames", setting.sweep, point, "fake")
-    ((_, row),) = measure(Task({place: answering(answers)}, setting, {}))
+    ((_, row),) = measure(SweepTask({place: answering(answers)}, setting, {}))
     assert row["status"] == "ok", row["reason"]
     return row
 

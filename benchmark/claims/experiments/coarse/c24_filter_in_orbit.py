@@ -33,7 +33,7 @@ FORGETFUL_DEG_SQRT_H = 1000.0
 
 
 @dataclass(frozen=True)
-class Pair:
+class _Pair:
     """RMS errors in degrees of the filter and of itself without a memory, on the same samples."""
 
     filtered: float
@@ -58,7 +58,7 @@ def trial(number: int) -> Trial:
     )
 
 
-def values(nominal: Pair, noisy: Pair) -> dict[str, float]:
+def values(nominal: _Pair, noisy: _Pair) -> dict[str, float]:
     """Give the rules' statistics: a ratio of errors, and of what noise adds to their squares."""
     return {
         "filter": ratio(nominal.single, nominal.filtered),
@@ -83,6 +83,6 @@ def _errors(seen: ConditionView) -> tuple[Floats, Floats]:
     return first, second
 
 
-def _pair(filtered: Floats, single: Floats) -> Pair:
+def _pair(filtered: Floats, single: Floats) -> _Pair:
     both = np.isfinite(filtered) & np.isfinite(single)
-    return Pair(rms(filtered, both), rms(single, both))
+    return _Pair(rms(filtered, both), rms(single, both))

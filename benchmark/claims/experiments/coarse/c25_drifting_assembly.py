@@ -26,7 +26,7 @@ EDGES = np.arange(0.0, 3.01, 0.25)
 
 
 @dataclass(frozen=True)
-class Pair:
+class _Pair:
     """RMS errors in degrees of both filters on the same samples: of all, and of the last orbit."""
 
     kept: float
@@ -42,7 +42,7 @@ def trial(number: int) -> Trial:
     return Trial(values(drifting, _pair("stable", number, {})), lines)
 
 
-def values(drifting: Pair, stable: Pair) -> dict[str, float]:
+def values(drifting: _Pair, stable: _Pair) -> dict[str, float]:
     """Give the rules' statistics from the sensor as it drifts, and as it does not."""
     tracked = drifting.tracked**2 - stable.tracked**2
     kept = drifting.kept**2 - stable.kept**2
@@ -52,7 +52,7 @@ def values(drifting: Pair, stable: Pair) -> dict[str, float]:
     }
 
 
-def _pair(condition: str, number: int, lines: dict[str, Line]) -> Pair:
+def _pair(condition: str, number: int, lines: dict[str, Line]) -> _Pair:
     seen = ConditionView(with_true_directions(ccd_multi_slit_orbit.PRESET), condition, number)
     kept, tracked = (
         seen.errors(PeakPositionEstimate, model)
@@ -63,4 +63,4 @@ def _pair(condition: str, number: int, lines: dict[str, Line]) -> Pair:
         within = rms_within(np.where(both, found, np.nan), since, EDGES)
         lines[name] = (middles(EDGES), within)
     last = both & (since >= 2.0)
-    return Pair(rms(kept, both), rms(tracked, both), rms(kept, last), rms(tracked, last))
+    return _Pair(rms(kept, both), rms(tracked, both), rms(kept, last), rms(tracked, last))

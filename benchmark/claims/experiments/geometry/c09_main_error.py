@@ -34,7 +34,7 @@ _LENGTHENS = 60.0 * 23.1e-6
 
 
 @dataclass(frozen=True)
-class Parts:
+class _Parts:
     """RMS errors in degrees of one unit: with one error of assembly alone, and with none.
 
     Of the unit without any: by the model, by a table on top of it, at 80 deg C, and there on a
@@ -55,7 +55,7 @@ def trial(number: int) -> Trial:
     return Trial(statistics(parts), {"spm": (PARTS, list(astuple(parts)))})
 
 
-def statistics(parts: Parts) -> Mapping[str, float]:
+def statistics(parts: _Parts) -> Mapping[str, float]:
     """Give the rules' statistics."""
     rest = parts.neither**2
     off, long = (max(one**2 - rest, 0.0) for one in (parts.misalignment, parts.focal_length))
@@ -67,9 +67,9 @@ def statistics(parts: Parts) -> Mapping[str, float]:
     }
 
 
-def _parts(preset: Preset, unit: int) -> Parts:
+def _parts(preset: Preset, unit: int) -> _Parts:
     seen = _seen(preset, unit, _align)
-    return Parts(
+    return _Parts(
         misalignment=_drawing(_seen(preset, unit, _as_long_as_drawn)),
         focal_length=_drawing(_seen(preset, unit, partial(misalign, times=0.0))),
         neither=_drawing(seen),
