@@ -25,11 +25,6 @@ def canonical_json(value: object) -> str:
 
     Floats keep 12 significant digits, so that the last bits of a platform's sine do not make
     another key. Accepts dataclasses, enums, arrays, sets, mappings, sequences and plain values.
-
-    Raises
-    ------
-    TypeError
-        For a value that has no canonical spelling.
     """
     return json.dumps(
         to_plain(value, _round_to, _arguments),
@@ -48,19 +43,8 @@ def digest(value: object) -> str:
 def to_plain(value: object, number: Number, members: Members) -> Any:
     """Return a value as JSON has it: objects, arrays, strings, numbers, booleans and null.
 
-    Parameters
-    ----------
-    value
-        Dataclasses, enums, arrays, sets, mappings, sequences and plain values, within each other.
-    number
-        Spells a float.
-    members
-        What of a dataclass instance is spelt, by name.
-
-    Raises
-    ------
-    TypeError
-        For a value that has no canonical spelling.
+    `number` spells a float, `members` says what of a dataclass instance is spelt, by name.
+    TypeError for a value that has no canonical spelling.
     """
     if value is None or (isinstance(value, str | int) and not isinstance(value, Enum)):
         return value

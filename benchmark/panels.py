@@ -35,22 +35,7 @@ def panel_figure(
 ) -> Figure:
     """Draw panels row by row, each of a size in inches, below a title and a legend.
 
-    Parameters
-    ----------
-    panels
-        What each panel shows.
-    fill
-        Draws one of them into its axes.
-    size
-        Width and height of a panel with its names and ticks.
-    title, explained
-        Text above all, and what is across and upwards.
-    legend
-        Entries.
-    columns
-        Number of panels side by side.
-    margins
-        Inches left and right of all panels.
+    `margins` are inches left and right of all panels.
     """
     from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
 

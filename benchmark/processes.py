@@ -163,15 +163,7 @@ def end_with_coordinator() -> None:
 
 
 def end_with(coordinator: int, by: int = signal.SIGKILL) -> None:
-    """Let this process end when the process that started it does, or at once where it has.
-
-    Parameters
-    ----------
-    coordinator
-        Number of the process that started this one.
-    by
-        The signal that ends it.
-    """
+    """Let this process end when the process that started it does, or at once where it has."""
     _tell_at_death(by)
     if os.getppid() != coordinator:  # it ended before this could be asked for
         os.kill(os.getpid(), by)

@@ -31,15 +31,7 @@ def silent(done: int, total: int, what: str) -> None:
 
 
 def time_left(elapsed_s: float, done: int, total: int) -> str:
-    """Return what time is left in words, "" where that is not known yet.
-
-    Parameters
-    ----------
-    elapsed_s
-        Seconds since the begin.
-    done, total
-        Cells, or other parts.
-    """
+    """Return what time is left in words, "" where that is not known yet."""
     if not 0 < done < total:
         return ""
     left = elapsed_s * (total - done) / done
@@ -104,19 +96,7 @@ def lines(
     clock: Callable[[], float] = time.monotonic,
     pause_s: float = PAUSE_S,
 ) -> ProgressCallback:
-    """Return a callback that says how far something is and what time is left, seldom.
-
-    Parameters
-    ----------
-    doing
-        What is done, as each line begins.
-    say
-        Is given each line.
-    clock
-        Seconds.
-    pause_s
-        Between two lines, and before the first.
-    """
+    """Return a callback that says how far something is and what time is left, seldom."""
     start = last = clock()
 
     def report(done: int, total: int, what: str) -> None:

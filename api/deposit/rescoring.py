@@ -193,7 +193,7 @@ class _Deposited:
         """Say that features are not known."""
         return False
 
-    def put(self, stage: str, cell: Cell, value: Any, seconds: float) -> None:
+    def put(self, stage: str, cell: Cell, value: Any) -> None:
         """Keep nothing."""
 
     def _data(self, cell: Cell) -> RenderedData:

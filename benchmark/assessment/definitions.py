@@ -82,15 +82,7 @@ class Definition:
         return PARTLY if sign * value >= sign * self.partly else NOT
 
     def why_undecided(self, survey: int, measured: int | None) -> str:
-        """Say why an outcome does not judge the survey's score; empty where it does.
-
-        Parameters
-        ----------
-        survey
-            2, 1 or 0, as the survey scores it.
-        measured
-            2, 1 or 0; None where nothing is measured.
-        """
+        """Say why an outcome does not judge the survey's score; empty where it does."""
         if not self.has_experiment:
             return self.measure
         beyond = (self.judged == "claimed" and survey == NOT) or (

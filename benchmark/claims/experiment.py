@@ -69,13 +69,7 @@ class ExperimentError(ValueError):
 
 @cache
 def find_experiments() -> Mapping[str, ClaimExperiment]:
-    """Every experiment by its claim.
-
-    Raises
-    ------
-    ExperimentError
-        For a module without ``trial``, and for two modules of one claim.
-    """
+    """Every experiment by its claim."""
     by_claim: dict[str, ClaimExperiment] = {}
     for package in pkgutil.iter_modules(experiments.__path__, f"{experiments.__name__}."):
         folder = importlib.import_module(package.name)

@@ -49,13 +49,7 @@ class Judgement:
 
 
 def judge(rule: Rule, values: Sequence[float]) -> Judgement:
-    """Judge a rule by the values (T,) that its statistic took; NaN where a trial gave none.
-
-    Raises
-    ------
-    ValueError
-        For a value below 0 under a rule that averages logarithms.
-    """
+    """Judge a rule by the values (T,) that its statistic took; NaN where a trial gave none."""
     given = np.asarray(values, dtype=np.float64)
     given = given[~np.isnan(given)]
     if len(given) < FEWEST_TRIALS:

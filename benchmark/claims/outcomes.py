@@ -73,11 +73,7 @@ def plan_digest(claim: Claim) -> str:
 def outcome_of(claim: Claim, trials: Sequence[Trial]) -> ClaimOutcome:
     """Put the trials of a claim together.
 
-    Raises
-    ------
-    OutcomeError
-        Where a trial lacks a rule's statistic or has another's, where lines differ in their
-        places, or where the second method is announced and missing.
+    OutcomeError where they do not fit it, or each other.
     """
     names = {rule.name for rule in claim.rules}
     for number, trial in enumerate(trials):

@@ -25,17 +25,8 @@ _DRAWN, _DIRECTIONS = 40, 200
 def report(preset: Preset, condition: str, sun: Floats, draw: int) -> Floats:
     """Return the directions (N, 3) that a drawn bench gives for true ones (N, 3).
 
-    Parameters
-    ----------
-    preset
-        Of the unit on the bench.
-    condition
-        Whose kind of bench it is; the true directions where it has none.
-    sun
-        Unit vectors in the order of the poses.
-    draw
-        Number of the bench, from 0. Each unit has benches of its own, which are the same for every
-        data set: errors on them compare from board to board.
+    Benches are numbered from 0; each unit has its own, which are the same for every data set, so
+    that errors on them compare. True directions where the condition has no bench.
     """
     bench = _bench(preset, condition)
     if bench is None:

@@ -48,20 +48,8 @@ def without_repeats(
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
     """Return what conditions share, and by condition what it has of its own.
 
-    Parameters
-    ----------
-    parameters
-        Of every condition by name; the first one's are what they share.
-    geometry
-        The dataset's, which a condition has only where its own is another.
-
-    Returns
-    -------
-    shared
-        Parameters without the geometry.
-    own
-        By condition the members ``parameters`` and, where it is another, ``geometry``;
-        `parameters_of` puts all together.
+    Shared are the parameters of the first condition, without the geometry; `parameters_of` puts
+    all together.
     """
     shared: dict[str, Any] = {}
     own: dict[str, dict[str, Any]] = {}
@@ -88,13 +76,7 @@ def stream_names(name: str, version: int) -> dict[str, Any]:
 
 
 def parameters_of(card: Mapping[str, Any], condition: str) -> dict[str, Any]:
-    """Return the parameters of a condition from a dataset's card, as `Preset.parameters`.
-
-    Raises
-    ------
-    KeyError
-        When the card has no such condition.
-    """
+    """Return the parameters of a condition from a dataset's card, as `Preset.parameters`."""
     about = card["conditions"][condition]
     whole = merge(card["parameters"], about["parameters"])
     return {**whole, "geometry": about.get("geometry", card["geometry"])}

@@ -29,17 +29,6 @@ def board_facts(
 ) -> dict[str, float | None]:
     """Return the numbers of a test split that a board states once, by their names in a pin.
 
-    Parameters
-    ----------
-    preset
-        Of unit 0.
-    condition
-        Of the data set.
-    sun
-        True directions (N, 3).
-    bound
-        Of the same samples.
-
     Returns
     -------
     dict

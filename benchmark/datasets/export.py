@@ -216,19 +216,7 @@ def card_of(
     exported: Mapping[str, Any],
     files: Sequence[Mapping[str, Any]],
 ) -> dict[str, Any]:
-    """Return the card of an export.
-
-    Parameters
-    ----------
-    made
-        Directory with its files.
-    preset
-        The data set.
-    exported
-        Conditions, splits and how many samples.
-    files
-        What each file is; their sizes and checksums are added.
-    """
+    """Return the card of an export."""
     card = preset.card()
     names = {name for file in files for name in file.get("arrays", ())}
     context = card.get("context", {})

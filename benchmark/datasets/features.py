@@ -21,17 +21,7 @@ _FRAME = 2
 def features_of(
     extractor: Extractor, samples: Samples, by: ReferenceCorrection | None = None
 ) -> Floats:
-    """Return what an extractor finds in samples (N, F), corrected first.
-
-    Parameters
-    ----------
-    extractor
-        Made for the sensor.
-    samples
-        As they were read.
-    by
-        Their `benchmark.datasets.corrected.correction`; None leaves them as they are.
-    """
+    """Return what an extractor finds in samples (N, F), corrected first."""
     count, origin = len(samples.sun), samples.origin_px
     size, step = 8 * np.asarray(samples.observations).size, count
     if by is not None and size > _LARGE_BYTES:

@@ -25,13 +25,7 @@ _WITHOUT_ALBEDO = "no-albedo"
 
 
 def hazards(conditions: Sequence[str]) -> dict[str, tuple[str, ...]]:
-    """Return the hazards that the conditions of a data set try, and by which of them each.
-
-    Parameters
-    ----------
-    conditions
-        All names of one data set, the first first.
-    """
+    """Return the hazards that the conditions of a data set try, and by which of them each."""
     found = {
         hazard: tuple(name for name in conditions if name in names)
         for hazard, names in TRIED.items()

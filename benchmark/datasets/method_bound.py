@@ -16,15 +16,6 @@ def method_bound_deg(
 ) -> Floats | None:
     """Return the bound (N,) in degrees of a method that reads more than one sample's signal.
 
-    Parameters
-    ----------
-    preset, condition
-        Whose test split it is.
-    context
-        Columns that the method reads beside the features.
-    bound
-        Of single samples.
-
     Returns
     -------
     ndarray or None

@@ -59,22 +59,6 @@ def score_variants(
     As it is, the calibration has the true directions of its poses, and readings are corrected by
     the unit's references.
 
-    Parameters
-    ----------
-    preset
-        Of unit 0.
-    condition
-        Of the data set.
-    extractor, model
-        Of the pipeline, as they are planned.
-    all_observable
-        Whether every test sample is known to be, so that no bound is needed.
-
-    Raises
-    ------
-    UnusableDataError
-        Where the model refuses the calibration as it is.
-
     Notes
     -----
     - ``bench``: the calibration has the directions that `BENCHES` drawn benches give, pooled.

@@ -152,17 +152,6 @@ def true_features(
     behind a lens, the image of that centre. Rows where nothing is found stay so; a spot of a list
     that is no aperture's (farther than `_SAME_SPOT_PX` from all) stays where it was found. None for
     other features than spots.
-
-    Parameters
-    ----------
-    preset, condition
-        Of the data set.
-    kind
-        Of the features.
-    sun
-        True directions (N, 3).
-    found
-        Features (N, F) that an extractor found.
     """
     sensor, geometry = preset.condition(condition).sensor, preset.geometry_for(condition)
     camera, pitch = getattr(sensor, "camera", None), geometry.pixel_pitch_mm

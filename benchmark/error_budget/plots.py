@@ -26,13 +26,7 @@ _BELOW = 10.0
 
 
 def picture(rows: Sequence[Row]) -> str:
-    """Draw the budgets as SVG, a line a data set.
-
-    Parameters
-    ----------
-    rows
-        As the record has them (`benchmark.error_budget.record`).
-    """
+    """Draw the budgets as SVG, a line a data set."""
     return svg(partial(figure, rows), _ABOUT)
 
 

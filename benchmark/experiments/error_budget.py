@@ -114,13 +114,6 @@ def leaders(scores: Iterable[Mapping[str, Any]], conditions: Mapping[str, str]) 
     """Return of each data set the score, on the standard unit, of the pipeline that leads it.
 
     By the geometric mean of its errors over the units that it was scored on.
-
-    Parameters
-    ----------
-    scores
-        Rows of all units, as `Store.rows` gives them.
-    conditions
-        The condition by data set.
     """
     errors: dict[_Place, list[float | None]] = {}
     standard: dict[_Place, Row] = {}

@@ -19,11 +19,6 @@ _FEWEST_UNITS = 10
 def on_bench(rows: Iterable[Row]) -> dict[Cell, float]:
     """Return the root mean square error on drawn benches by pipeline, pooled over units.
 
-    Parameters
-    ----------
-    rows
-        Of all units and conditions.
-
     Returns
     -------
     dict

@@ -189,11 +189,6 @@ def board_of(store: Store, times: Times = _NOT_TIMED) -> dict[str, Any]:
 def best_of_extractors_first(ranked: Iterable[Row]) -> list[dict[str, Any]]:
     """Order the rows of one data set and condition as a board lists them.
 
-    Parameters
-    ----------
-    ranked
-        Rows with ``rank``, best first.
-
     Returns
     -------
     list of dict

@@ -28,13 +28,7 @@ Told = tuple[str, str, str, str]
 
 
 def contradictions(store: Store, parts: Parts) -> Iterator[Told]:
-    """Yield what cannot be so: file, cell, what stands there and what should, in their order.
-
-    Raises
-    ------
-    StoreError
-        When a file cannot be read.
-    """
+    """Yield what cannot be so: file, cell, what stands there and what should, in their order."""
     pins, scores = store.pins(), store.scores()
     yield from _of_pins(store.pins_path.name, pins, parts)
     yield from _of_bounds(store.pins_path.name, pins, scores)

@@ -82,13 +82,7 @@ def first_groups(
 def score_fresh_units(
     store: Store, workers: int = 1, *, parts: Parts | None = None
 ) -> list[FreshUnitResult]:
-    """Score the first of every board on the fresh units; nothing is written to the store.
-
-    Raises
-    ------
-    RunInterruptedError
-        On Ctrl-C; nothing is kept.
-    """
+    """Score the first of every board on the fresh units; nothing is written to the store."""
     known = parts or installed_parts()
     scores = store.scores()
     groups = first_groups(scores, known)

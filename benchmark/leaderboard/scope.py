@@ -70,16 +70,8 @@ def followers(
     """List what follows from the first scores: points 2 and 3 of the rule, in order.
 
     Pipelines without an error neither rank nor lead.
-
-    Parameters
-    ----------
-    scores
-        Numbers by cell; only those of `first` are looked at.
-    parts
-        Data sets and implementations.
-    studied
-        Detector, mask, extractor and model of pipelines that studies used; those of the registry
-        by default.
+    `studied` are detector, mask, extractor and model of pipelines that studies used; those of the
+    registry by default.
     """
     used = studied_pipelines(parts) if studied is None else frozenset(studied)
     found: list[Cell] = []

@@ -93,20 +93,7 @@ def measure_scope(
 ) -> Summary:
     """Bring the scores and pins of a record up to date, and drop what is not of its scope.
 
-    Parameters
-    ----------
-    store
-        Of the record.
-    known
-        Its data sets, all of which are pinned, and implementations.
-    first
-        Cells of the first round, in order.
-    choose
-        Gives what follows from scores, of these parts.
-    started
-        When the caller began, by `time.perf_counter`.
-    workers, progress, scheduler
-        As `update`, as are the errors.
+    `started` is when the caller began, by `time.perf_counter`.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")

@@ -31,11 +31,6 @@ def sizes(poses: int) -> tuple[int, ...]:
     """Return how many poses are taken of so many: the steps of `LADDER`, then all.
 
     A step less than half a step below all of them, which would say the same again, is left out.
-
-    Raises
-    ------
-    ValueError
-        For less than one pose.
     """
     if poses < 1:
         raise ValueError(f"a calibration needs poses; got {poses}")
@@ -45,24 +40,12 @@ def sizes(poses: int) -> tuple[int, ...]:
 def subsets(poses: int, *names: str | int, in_order: bool = False) -> Iterator[tuple[int, Rows]]:
     """Yield (size, rows) of one draw for each of `sizes`, smallest first.
 
-    Parameters
-    ----------
-    poses
-        Of the calibration split.
-    names
-        Of the draw's random stream.
-    in_order
-        Whether the split is a time series.
+    `names` are those of the random stream; `in_order`: the split is a time series.
 
     Yields
     ------
     tuple of int and ndarray, shape (size,)
         Rows of the split, ascending; each subset holds those before it.
-
-    Raises
-    ------
-    ValueError
-        For less than one pose, or a draw without a name.
     """
     generator = seeds.generator("learning-curve", *names)
     if in_order:

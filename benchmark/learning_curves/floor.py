@@ -87,11 +87,6 @@ def floor_of(
     Floor or None
         The error with all poses where fewer than `FEWEST_SIZES` sizes count, or the law misses by
         more than `WORST_MISFIT`; None where there is no error with all poses that counts.
-
-    Raises
-    ------
-    ValueError
-        On shapes that do not go together.
     """
     errors = np.asarray(errors_deg, dtype=np.float64)
     usable = np.asarray(counted, dtype=np.bool_) & np.isfinite(errors)
@@ -129,20 +124,7 @@ def floor_of(
 
 
 def reached_from(sizes: Sequence[int], near: ArrayLike) -> int | None:
-    """Return the size from which on every one is near; None where the last is not.
-
-    Parameters
-    ----------
-    sizes
-        Numbers of poses (S,), ascending.
-    near
-        Whether (S,) each is.
-
-    Raises
-    ------
-    ValueError
-        Where there are not as many of one as of the other, or none.
-    """
+    """Return the size from which on every one is near; None where the last is not."""
     flags = np.asarray(near, dtype=np.bool_)
     if flags.shape != (len(sizes),) or not len(sizes):
         raise ValueError(f"near must have shape ({len(sizes)},), not empty; got {flags.shape}")

@@ -46,13 +46,6 @@ class Leader:
 def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader]:
     """Return the leaders of every data set, best first within each.
 
-    Parameters
-    ----------
-    scores
-        Rows as `Store.rows` gives them.
-    conditions
-        Of each data set, the condition that is looked at.
-
     Returns
     -------
     list of Leader

@@ -101,13 +101,7 @@ class _Part:
 
 
 def measure(task: CurveTask) -> list[CurveErrors]:
-    """Calibrate every leader of a data set on every subset of poses, and score it.
-
-    Raises
-    ------
-    Exception
-        What an implementation raises beside its word for poses that it cannot be calibrated on.
-    """
+    """Calibrate every leader of a data set on every subset of poses, and score it."""
     with one_thread():
         preset, condition = task.preset, task.leaders[0].condition
         geometry = preset.geometry_for(condition)

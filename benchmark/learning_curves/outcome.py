@@ -25,15 +25,6 @@ def row_of(learnt: CurveErrors, bound_deg: float, bench_deg: float | None) -> Ro
     A draw is near the floor where its error is at most `NEAR` floors of its unit and it answers as
     often as a ranked pipeline must; the poses it needs are those from which on it stays so.
 
-    Parameters
-    ----------
-    learnt
-        The errors.
-    bound_deg
-        Cramer-Rao bound that the board's score of the pipeline has, root mean square.
-    bench_deg
-        Fixed error of the standard bench's directions, root mean square; None where none is pinned.
-
     Returns
     -------
     dict

@@ -45,13 +45,7 @@ _AWAY = 3.0
 
 
 def picture(rows: Sequence[Row]) -> str:
-    """Draw the curves as SVG, a panel a data set.
-
-    Parameters
-    ----------
-    rows
-        As `benchmark.learning_curves.record.published_curves` gives them.
-    """
+    """Draw the curves as SVG, a panel a data set."""
     return svg(lambda: figure(rows), _ABOUT)
 
 
@@ -77,7 +71,7 @@ def _fill(axes: Axes, leaders: Sequence[Row]) -> None:
     axes.set_ylim(low, high)
     places = [p for p in (5, 20, 100, 500, 2000) if p <= leaders[0]["poses"]]
     axes.set_xticks(places, [str(p) for p in places])
-    rule(axes, axes.get_yticks())
+    rule(axes, axes.get_yticks().tolist())
     _bound(axes, leaders[0], low)
     bench = leaders[0]["bench_deg"]
     if bench and low <= bench <= high:

@@ -81,13 +81,7 @@ def summary(row: Row) -> Row:
 
 
 def half_of(values: Sequence[int | None]) -> int | None:
-    """Return the smallest value that half of them do not exceed; None stands above all.
-
-    Raises
-    ------
-    ValueError
-        Where there are none.
-    """
+    """Return the smallest value that half of them do not exceed; None stands above all."""
     if not values:
         raise ValueError("values must not be empty")
     known = sorted(value for value in values if value is not None)

@@ -123,13 +123,7 @@ class Components:
         )
 
     def condition_digest(self, dataset: str, condition: str) -> str:
-        """Return the digest of a data set under a condition; empty under one that it has not.
-
-        Raises
-        ------
-        ComponentsError
-            Where there is no such data set.
-        """
+        """Return the digest of a data set under a condition; empty under one that it has not."""
         digests: Mapping[str, str] = self._facts("datasets", dataset)["conditions"]
         return digests.get(self.condition_read(dataset, condition), "")
 
@@ -237,13 +231,7 @@ class Components:
 
 
 def current(parts: Parts) -> Components:
-    """Return the components as the code is now.
-
-    Parameters
-    ----------
-    parts
-        Data sets and implementations.
-    """
+    """Return the components as the code is now."""
     methods = (*parts.extractors.values(), *parts.models.values())
     made_of = {module for preset in parts.presets.values() for module in modules_of(preset)}
     made_of.update(module for method in methods for module in method_modules(method))

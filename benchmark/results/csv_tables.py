@@ -96,13 +96,6 @@ def text_of(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
 def read_csv(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
     """Read (line number, row) of a table; nothing where there is no file.
 
-    Parameters
-    ----------
-    path
-        Of the file.
-    columns
-        What each column holds, in the order of the header.
-
     Raises
     ------
     StoreError

@@ -27,14 +27,7 @@ def read_parquet(
 ) -> pd.DataFrame:
     """Return a table that has these columns, of these types, and at least one row.
 
-    Parameters
-    ----------
-    path
-        Of the file.
-    columns
-        Type by name, in order.
-    names
-        Columns of text that repeat, to be returned as categories.
+    Columns of text in `names` come as categories.
 
     Raises
     ------

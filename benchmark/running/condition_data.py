@@ -6,7 +6,6 @@ them between stages changes no number.
 
 from __future__ import annotations
 
-import time
 from collections import OrderedDict
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
@@ -57,19 +56,8 @@ def generate(
 ) -> ConditionData:
     """Return the data of a data set under one condition, as a unit of its sensor sees them.
 
-    Parameters
-    ----------
-    preset
-        Of unit 0.
-    condition
-        Of the data set.
-    unit
-        Of the sensor.
-    all_observable
-        Whether every test sample is known to be observable, so that another unit than the
-        standard one needs no bound.
-    kept
-        Where they may be kept between processes.
+    `all_observable`: every test sample is known to be observable, so that another unit than the
+    standard one needs no bound. `kept` is where data may be kept between processes.
     """
     place = _place_of(preset, condition, unit)
     if place not in _kept:
@@ -146,17 +134,15 @@ def _rendered_or_kept(
         standard: ConditionData | None = kept.get(TRUTH, _cell(preset, condition, 0))
         if standard is not None:
             _observable[place] = standard.observable
-    started = time.process_time()
     made = render(preset, condition, unit, all_observable=all_observable)
-    seconds = time.process_time() - started
     # extractors and models need the room
     memory.release_mapped()
     release_free_memory()
     # a preset is the caller's own: it is not kept, but taken from who asks
     bare = replace(made.data, preset=cast("Preset", None))
-    kept.put(DATA, cell, replace(made, data=bare), seconds)
+    kept.put(DATA, cell, replace(made, data=bare))
     unseen = {split: _unseen(samples) for split, samples in bare.splits.items()}
-    kept.put(TRUTH, cell, replace(bare, splits=unseen), seconds)
+    kept.put(TRUTH, cell, replace(bare, splits=unseen))
     return made
 
 

@@ -78,13 +78,7 @@ class Experiment(ABC, Generic[C]):
         return str(cell)
 
     def cells_named(self, names: Collection[str]) -> list[C]:
-        """Return the cells of these names.
-
-        Raises
-        ------
-        UnknownNameError
-            For a name of no cell.
-        """
+        """Return the cells of these names."""
         known: dict[str, list[C]] = {}
         for cell in self.cells():
             known.setdefault(self.name_of(cell), []).append(cell)
@@ -158,13 +152,7 @@ class ExperimentSummary:
 
 
 def experiments() -> dict[str, type[RecordedExperiment[Any] | Report[Any]]]:
-    """Return every experiment by name.
-
-    Raises
-    ------
-    ValueError
-        For a module of `benchmark.experiments` that defines no experiment, or several.
-    """
+    """Return every experiment by name."""
     package = importlib.import_module("benchmark.experiments")
     found: dict[str, type[RecordedExperiment[Any] | Report[Any]]] = {}
     for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
@@ -218,26 +206,8 @@ def update(
     """Measure what is due, drop what is no longer wanted, write the file.
 
     It is written after every task, so that a call that is broken off is gone on with.
-
-    Parameters
-    ----------
-    experiment
-        Bound to a record.
-    workers
-        Number of processes; the file does not depend on it.
-    progress
-        Called as ``progress(done, total, what)`` in cells; a bar on a terminal by default.
-    only
-        Measure these cells instead, due or not.
-
-    Raises
-    ------
-    ValueError
-        For less than one worker.
-    StoreError, ComponentsError
-        For a file that cannot be read.
-    HeldError
-        When another process brings the experiment up to date.
+    `only` are cells that are measured instead, due or not.
+    HeldError when another process brings the experiment up to date.
     """
     _require_workers(workers)
     started = time.perf_counter()

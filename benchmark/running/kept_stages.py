@@ -45,19 +45,7 @@ class KeptStages:
     ) -> KeptStages | None:
         """Return what is kept in a store's working directory; None where nothing is to be.
 
-        Parameters
-        ----------
-        directory
-            Of the store that is measured into.
-        components
-            As they are.
-        others
-            Working directories of stores that are looked at.
-
-        Raises
-        ------
-        ValueError
-            Where the limit is no number (`benchmark.results.stage_files.limit_bytes`).
+        `others` are working directories of stores that are looked at, too.
         """
         limit = limit_bytes()
         if not limit:
@@ -72,9 +60,9 @@ class KeptStages:
         found = (files.get(key) for files in self._all())
         return next((one for one in found if one is not None), None)
 
-    def put(self, stage: str, cell: Cell, value: Any, seconds: float) -> None:
-        """Keep a stage of a cell that took so long to make."""
-        self.files.put(self.key(stage, cell), value, seconds)
+    def put(self, stage: str, cell: Cell, value: Any) -> None:
+        """Keep a stage of a cell."""
+        self.files.put(self.key(stage, cell), value)
 
     def keys(self) -> set[str]:
         """Return the keys of all that is kept."""

@@ -42,13 +42,7 @@ class OlderRunError(RuntimeError):
 
 
 def older_environment() -> dict[str, str]:
-    """Return this process's environment with every library held to an older processor's code.
-
-    Raises
-    ------
-    NoOlderKernelsError
-        On a processor of another family.
-    """
+    """Return this process's environment with every library held to an older processor's code."""
     if platform.machine().lower() not in {"x86_64", "amd64"}:
         raise NoOlderKernelsError(
             f"older kernels are those of x86-64; this machine is {platform.machine()}"
@@ -64,21 +58,7 @@ def older_environment() -> dict[str, str]:
 def update_with_older_kernels(directory: Path, workers: int) -> None:
     """Bring a record up to date (`benchmark.leaderboard.update`) with an older processor's code.
 
-    Parameters
-    ----------
-    directory
-        Of the record; an empty one is measured from nothing.
-    workers
-        Number of processes.
-
-    Raises
-    ------
-    NoOlderKernelsError
-        On a processor of another family.
-    OlderRunError
-        When the process ends otherwise than well.
-    KeyboardInterrupt
-        When it was broken off.
+    An empty directory is measured from nothing. KeyboardInterrupt when it was broken off.
     """
     call = [sys.executable, "-m", "benchmark.leaderboard", str(directory), str(workers)]
     environment = {**older_environment(), **for_coordinator()}

@@ -110,15 +110,6 @@ def changed_heads(
 
     A check in seconds: of each split `benchmark.results.digests.HEAD` samples, and their bound.
     Presets of another version than their pins are not looked at.
-
-    Parameters
-    ----------
-    pinned
-        By dataset, condition and split.
-    presets
-        Datasets.
-    workers
-        Number of processes; tables that they make for this serve what they measure afterwards.
     """
     wanted = []
     for preset in presets:
@@ -180,26 +171,6 @@ def pin_missing(
     What is generated is on disk before the next is awaited. Data that changed without a new
     version are pinned all the same: it is for the caller to compare them with what was pinned
     before (`require_versions`).
-
-    Parameters
-    ----------
-    record
-        Open for writing.
-    components
-        As the code is.
-    parts
-        Datasets.
-    workers
-        Number of processes; the hashes do not depend on it.
-    progress
-        As `benchmark.running.runner.run`.
-    datasets
-        Names; all by default.
-
-    Raises
-    ------
-    UnknownNameError
-        For a dataset that is not installed.
     """
     started = time.perf_counter()
     every = conditions_of(parts, datasets)
@@ -309,13 +280,7 @@ def _wrong(pinned: Pin | None, pin: Pin) -> str:
 def conditions_of(
     parts: Parts, datasets: Collection[str] | None = None
 ) -> list[tuple[Preset, str]]:
-    """List every dataset and condition, of the named ones, in order.
-
-    Raises
-    ------
-    UnknownNameError
-        For a dataset that is not installed.
-    """
+    """List every dataset and condition, of the named ones, in order."""
     for name in sorted(datasets or ()):
         if name not in parts.presets:
             raise UnknownNameError("dataset", name, parts.presets)

@@ -17,17 +17,7 @@ from benchmark.running.task import TaskResult
 
 
 def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> list[Task]:
-    """Put cells into tasks, those of one dataset, unit and condition in a row: they share samples.
-
-    Parameters
-    ----------
-    cells
-        To measure.
-    parts
-        Data sets and implementations.
-    pins
-        What is known of the data already, by place.
-    """
+    """Put cells into tasks, those of one dataset, unit and condition in a row: they share data."""
     return [
         Task(
             parts.preset(dataset),

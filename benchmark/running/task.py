@@ -6,7 +6,6 @@ no number, and is no part of it. An error of an implementation becomes an outcom
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -84,14 +83,12 @@ def measured_on(
     kept: KeptStages | None = None,
 ) -> PipelineOutcome:
     """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
-    started = time.process_time()
     try:
         answers = fit_and_predict(task, extractor, model, features, data)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
         return PipelineOutcome(model.about.name, reason_of(error))
     if kept is not None:
-        seconds = time.process_time() - started
-        kept.put(PREDICTIONS, _cell(task, model), answers, seconds)
+        kept.put(PREDICTIONS, _cell(task, model), answers)
     return _judged(task, model, answers, data)
 
 
@@ -120,12 +117,11 @@ def _features(task: Task, kept: KeptStages | None) -> dict[str, Floats]:
     if known is not None:
         return known
     data, extractor = _data(task, generate, kept), _extractor(task)
-    started = time.process_time()
     found = {split: found_features(data, extractor, split) for split in data.splits}
     if data.correction is not None:  # of frames that leave little room for what is free
         release_free_memory()
     if kept is not None:
-        kept.put(FEATURES, cell, found, time.process_time() - started)
+        kept.put(FEATURES, cell, found)
     return found
 
 

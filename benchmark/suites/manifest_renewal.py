@@ -46,13 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def renew(directory: Path) -> list[str]:
-    """Take a record as it is into its manifest; return the files that were not in it so.
-
-    Raises
-    ------
-    StoreError, ComponentsError
-        Where a file cannot be read; the manifest is left as it is.
-    """
+    """Take a record as it is into its manifest; return the files that were not in it so."""
     store = Store(directory)
     store.rows(unit=None)
     for name in samples.datasets(directory):

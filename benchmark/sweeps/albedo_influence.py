@@ -104,20 +104,7 @@ def maximum_currents(currents: Floats) -> Floats:
 
 
 def on_cube(name: str = "pd-maskless-cube", samples: int | None = None) -> Influence:
-    """Move the maximum-currents estimate of a photodiode cube's albedo condition.
-
-    Parameters
-    ----------
-    name
-        Of the dataset.
-    samples
-        Only so many of the test split; None takes all.
-
-    Raises
-    ------
-    NoInfluenceError
-        When the dataset's sensor is no cube of photodiodes, or never sees the Earth.
-    """
+    """Move the maximum-currents estimate of a photodiode cube's albedo condition."""
     preset = _with_albedo(name)
     sensor = preset.condition("albedo").sensor
     if not isinstance(sensor, FaceSensor) or not _is_cube(sensor):
@@ -134,18 +121,6 @@ def on_balance(name: str = "qpd-single-aperture", samples: int | None = None) ->
     """Move the voltage balance of photodiodes behind an opening by Earth's light.
 
     Its directions are those of the standard projection, fitted on the ground.
-
-    Parameters
-    ----------
-    name
-        Of the dataset.
-    samples
-        Only so many of the test split; None takes all.
-
-    Raises
-    ------
-    NoInfluenceError
-        When the dataset has no four currents to balance, or never sees the Earth.
     """
     preset = _with_albedo(name)
     sensor, pattern = preset.condition("albedo").sensor, preset.fixed_pattern("albedo")
@@ -261,24 +236,8 @@ def on_aperture(
 ) -> Influence:
     """Move the centroid behind one aperture by Earth's light, for the same random positions.
 
-    Parameters
-    ----------
-    name
-        Of a dataset of frames behind one aperture.
-    samples
-        Only so many of the test split; None takes all.
-    extractor
-        Whose spot is looked at; None takes the thresholded centroid.
-    earth
-        Seen from orbit; None takes that of ``pd-maskless-cube``.
-
-    Raises
-    ------
-    NoInfluenceError
-        When the dataset has no such sensor, or its frames are not cut out around a Sun in random
-        directions.
-    ValueError
-        When its geometry gives no focal length or pixel pitch.
+    The spot is that of the thresholded centroid, the Earth that of ``pd-maskless-cube``, unless
+    others are given.
     """
     preset = datasets.get(name)
     sensor = preset.condition("nominal").sensor

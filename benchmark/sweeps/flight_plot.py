@@ -39,11 +39,6 @@ _MINUTES = 135.0
 def along(dataset: str, extractor: str, single: str, filtered: str) -> dict[str, Floats]:
     """Own errors along the test split under nominal conditions, degrees.
 
-    Parameters
-    ----------
-    dataset, extractor, single, filtered
-        Names; the model of single samples and the filter read the same features.
-
     Returns
     -------
     dict of ndarray, shape (N,)

@@ -84,7 +84,7 @@ def _fill(axes: Axes, rows: Sequence[Row], heights: Sequence[float]) -> None:
     places = [row["value"] for row in rows]
     shown = places[:: 1 + len(places) // 5]
     axes.set_xticks(shown, [f"{place:g}" for place in shown])
-    rule(axes, axes.get_yticks())
+    rule(axes, axes.get_yticks().tolist())
     _curve(axes, places, [row["bound"] for row in rows], **bound_style(_BOUND, _WIDTH))
     errors = [row["rms"] for row in rows]
     if not any(errors):

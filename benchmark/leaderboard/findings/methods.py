@@ -35,13 +35,6 @@ def methods(record: FindingsRecord, resolutions: Mapping[str, Resolution]) -> Fi
     """Compare the best method of each study with the best one measured on the same data set.
 
     Pipelines that several studies share count once.
-
-    Parameters
-    ----------
-    record
-        The scores.
-    resolutions
-        What runs for each study, by key.
     """
     uses = [use for use in _uses(resolutions) if use.cell in record.rows]
     left_out = [_without(set(resolutions) - {use.study for use in uses}, "without a score")]

@@ -14,13 +14,7 @@ Row = Mapping[str, Any]
 
 
 def poses(curves: Iterable[Row]) -> Finding:
-    """Count the poses from which on the best pipeline stays near its floor, with and without bench.
-
-    Parameters
-    ----------
-    curves
-        Published learning curves as `benchmark.learning_curves.record.published_curves` gives them.
-    """
+    """Count the poses from which on the best pipeline is near its floor, with and without bench."""
     first = [row for row in curves if row["place"] == 1]
     kept = [row for row in first if not row["in_order"]]
     pairs = [_pair(row) for row in kept]

@@ -16,15 +16,7 @@ DOMINANT = 0.5
 def sources(
     budgets: Mapping[str, Mapping[str, Any]], architectures: Mapping[str, tuple[str, str]]
 ) -> Finding:
-    """Compare the best pipeline of each data set with its bound and with true spot positions.
-
-    Parameters
-    ----------
-    budgets
-        Published error budgets by data set.
-    architectures
-        Detector and mask of each data set.
-    """
+    """Compare the best pipeline of each data set with its bound and with true spot positions."""
     pairs = [_pair(name, row, *architectures[name]) for name, row in sorted(budgets.items())]
     arrays = [p for p in pairs if p["detector"] in ARRAYS and p["extractor_share"] is not None]
     led = [pair for pair in arrays if pair["extractor_share"] > DOMINANT]

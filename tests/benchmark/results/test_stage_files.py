@@ -1,7 +1,6 @@
 """Results of stages on disk: the last bit comes back, the damaged does not, and room is made."""
 
 import os
-import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -36,7 +35,7 @@ def key(number):
 )
 def test_an_array_comes_back_to_the_last_bit_in_the_order_it_had(files, array):
     samples = Samples(array, np.eye(3), None, {"time_s": array})
-    files.put(key(1), {"test": samples}, 1.0)
+    files.put(key(1), {"test": samples})
     found = files.get(key(1))["test"]
     for one in (found.observations, found.context["time_s"]):
         assert one.dtype == array.dtype
@@ -46,14 +45,14 @@ def test_an_array_comes_back_to_the_last_bit_in_the_order_it_had(files, array):
 
 
 def test_what_would_come_back_otherwise_is_not_kept(files):
-    files.put(key(1), np.arange(24).reshape(4, 6)[:, ::2], 1.0)
-    files.put(key(2), lambda: 1, 1.0)
+    files.put(key(1), np.arange(24).reshape(4, 6)[:, ::2])
+    files.put(key(2), lambda: 1)
     assert files.keys() == set()
     assert files.get(key(1)) is None
 
 
 def test_a_damaged_file_is_as_one_that_is_not_there(files):
-    files.put(key(1), np.arange(1000), 1.0)
+    files.put(key(1), np.arange(1000))
     (path,) = files.directory.glob("01/*")
     whole = path.read_bytes()
     for damaged in (b"", whole[:-1], whole[:40], whole[:50] + b"x" + whole[51:]):
@@ -63,49 +62,36 @@ def test_a_damaged_file_is_as_one_that_is_not_there(files):
     assert files.get(key(1)).tolist() == list(range(1000))
 
 
-def test_what_costs_most_a_byte_is_kept_longest(files, tmp_path):
+def test_what_was_used_longest_ago_goes_first(files, tmp_path):
     rng = np.random.default_rng(1)
-    small = StageFiles(tmp_path / "stages", 100_000)
-    for number, seconds in enumerate((5.0, 1.0, 9.0, 3.0)):
-        files.put(key(number), rng.random(5000), seconds)
-    small.make_room()
-    assert small.size() <= small.limit
-    assert small.keys() == {key(0), key(2)}
-
-
-def test_what_was_not_used_for_weeks_is_worth_less(files, tmp_path):
-    rng = np.random.default_rng(1)
-    for number in range(2):
-        files.put(key(number), rng.random(5000), 2.0 - number)
-    long_ago = time.time() - 30 * 86400
-    for path in files.directory.glob("*/*"):
-        os.utime(path, (long_ago, long_ago))
-    assert files.get(key(1)) is not None  # used just now
-    StageFiles(tmp_path / "stages", 50_000).make_room()
-    assert files.keys() == {key(1)}
+    for number in range(3):
+        files.put(key(number), rng.random(5000))
+        (path,) = files.directory.glob(f"{key(number)[:2]}/*")
+        os.utime(path, (number, number))
+    assert files.get(key(0)) is not None  # used just now
+    StageFiles(tmp_path / "stages", 90_000).make_room()
+    assert files.keys() == {key(0), key(2)}
 
 
 def test_the_limit_is_kept_while_results_come(tmp_path):
     files = StageFiles(tmp_path, 200_000)
     rng = np.random.default_rng(1)
     for number in range(30):
-        files.put(key(number), rng.random(3000), 1.0)
+        files.put(key(number), rng.random(3000))
         assert files.size() < 250_000
     assert 0 < len(files.keys()) < 10
-    files.put(key(99), rng.random(100_000), 1e6)
+    files.put(key(99), rng.random(100_000))
     assert files.get(key(99)) is None, "larger than all there may be"
 
 
 def test_what_else_is_in_the_folder_is_neither_counted_nor_removed(files):
-    files.put(key(1), np.arange(1000), 2.0)
+    files.put(key(1), np.arange(1000))
     (files.directory / "elsewhere").mkdir()
-    others = [
-        files.directory / name for name in ("room", "01/.half.5", "01/no-cost", "elsewhere/x.1")
-    ]
+    others = [files.directory / name for name in ("room", "01/.half", "elsewhere/x")]
     for path in others:
         path.write_bytes(b"0" * 100)
-    assert files.costs() == {key(1): 2.0}
-    (path,) = (path for path in files.directory.glob("01/*.2000.*"))
+    assert files.keys() == {key(1)}
+    (path,) = files.directory.glob("01/[!.]*")
     assert files.size() == path.stat().st_size
     StageFiles(files.directory, 1).make_room()
     assert files.keys() == set()
@@ -115,7 +101,7 @@ def test_what_else_is_in_the_folder_is_neither_counted_nor_removed(files):
 def test_several_may_write_the_same(files):
     value = np.arange(20_000)
     with ThreadPoolExecutor(4) as pool:
-        list(pool.map(lambda _: files.put(key(1), value, 1.0), range(20)))
+        list(pool.map(lambda _: files.put(key(1), value), range(20)))
         found = list(pool.map(lambda _: files.get(key(1)), range(20)))
     assert all(np.array_equal(one, value) for one in found)
 
@@ -130,5 +116,5 @@ def test_the_limit_is_a_setting(monkeypatch, tmp_path):
         with pytest.raises(ValueError, match=f"{LIMIT_GB} must be a number"):
             limit_bytes()
     files = StageFiles(tmp_path / "none", 0)
-    files.put(key(1), 1, 1.0)
+    files.put(key(1), 1)
     assert not files.directory.exists()
