@@ -2,34 +2,15 @@
 
 from __future__ import annotations
 
-import ctypes
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import pytest
 
 from benchmark import processes
 from files.locks import LockedError
-
-
-@pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Any, ...]]:
-    """What the C library is asked for."""
-    calls: list[tuple[Any, ...]] = []
-
-    class Library:
-        def __init__(self, _: None) -> None: ...
-
-        def prctl(self, *given: int) -> None:
-            calls.append(("prctl", *given))
-
-        def malloc_trim(self, *given: int) -> None:
-            calls.append(("malloc_trim", *given))
-
-    monkeypatch.setattr(ctypes, "CDLL", Library)
-    return calls
 
 
 def raiser(error: BaseException) -> Callable[[], int]:

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from benchmark.claims import rules
-from benchmark.claims.ledger import LedgerError, ledger
 from benchmark.claims.rules import DIRECTORY, RulesError, claims
 
 
@@ -47,10 +46,3 @@ def test_a_table_that_cannot_decide_claims_is_refused_by_name(
     tables(name, old, new)
     with pytest.raises(RulesError, match=said):
         claims.__wrapped__()
-
-
-def test_two_explanations_of_one_claim_are_refused(tmp_path: Path) -> None:
-    path = tmp_path / "explanations.csv"
-    path.write_text("claim,verdict,says\nC04,refuted,No.\nC04,partly,Somewhat.\n")
-    with pytest.raises(LedgerError, match=r"explanations\.csv: claim C04 stands there twice"):
-        ledger(tmp_path, path)

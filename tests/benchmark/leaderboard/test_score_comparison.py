@@ -1,7 +1,5 @@
 """Committed numbers beside measured ones: what differs, and what is rounding."""
 
-import dataclasses
-
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -51,14 +49,3 @@ def test_a_fifth_of_a_percent_is_found_in_every_column_and_rounding_in_none(colu
         assert found
     if abs(factor - 1.0) < 1e-5:
         assert not found
-
-
-def test_every_cell_of_either_side_is_named_once():
-    row = {"status": "ok", **dict.fromkeys(METRICS), "reason": ""}
-    other = dataclasses.replace(CELL, model="other")
-    found = compare_scores({CELL: row}, {other: row}, {})
-    assert [(d.cell, d.committed, d.measured) for d in found] == [
-        (f"{CELL}/row", "present", "not measured"),
-        (f"{other}/row", "absent", "measured"),
-    ]
-    assert compare_scores({CELL: row}, {CELL: row}, {}) == []

@@ -1,29 +1,18 @@
 """Learning curves measured: closed forms, refusals, flights, numbers of workers, what is stale."""
 
-import json
 import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from fake_poses import Guess, Lines, Plane, Readings, mean_square
-from fake_results import numbers
 
-from benchmark.contract import Cell
-from benchmark.datasets.pins import Pin
-from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.learning_curves.draws import sizes
 from benchmark.learning_curves.floor import NEAR
 from benchmark.learning_curves.leaders import LEADING, Leader, leaders
 from benchmark.learning_curves.measure import DRAWS, UNITS, CurveTask, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.reading import summary
-from benchmark.learning_curves.record import RECORD
-from benchmark.plan.parts import Parts
-from benchmark.progress import silent
-from benchmark.results.components import current
-from benchmark.results.store import Store
-from benchmark.running.experiment import list_due, update
 
 LEADER = Leader("fake-plane", 1, "nominal", "fake-readings", "fake-lines")
 BOUND, BENCH = float(np.sqrt(mean_square(np.inf))), 0.5
@@ -151,66 +140,3 @@ def test_leaders_are_the_best_pipelines_of_three_models():
     ]
     assert len(found) == LEADING
     assert leaders(rows, {}) == []
-
-
-PARTS = Parts(
-    {name: Plane(name, poses=60) for name in ("fake-plane", "fake-other")},
-    {"fake-readings": Readings},
-    {"fake-lines": Lines, "fake-guess": Guess},
-)
-
-
-@pytest.fixture
-def store(tmp_path):
-    """A record with a score for every pipeline."""
-    scores = {
-        Cell(name, "nominal", "fake-readings", model): numbers(
-            BOUND, rms_all_answers_deg=float(place), bound_deg=BOUND
-        )
-        for name in PARTS.presets
-        for place, model in enumerate(PARTS.models, start=1)
-    }
-    pins = [
-        Pin(n, "nominal", "test", 1, 2000, "h", "hh", 2000, BOUND, BOUND, bench_deg=BENCH)
-        for n in PARTS.presets
-    ]
-    Store(tmp_path).write(scores, pins, current(PARTS))
-    return tmp_path
-
-
-@pytest.mark.slow
-def test_the_file_is_the_same_for_any_number_of_workers_and_nothing_is_measured_twice(store):
-    first = update(LearningCurves(store, PARTS), 1, silent)
-    path = store / RECORD.name
-    text = path.read_bytes()
-    assert (first.planned, first.computed) == (4, 4)
-    assert {row["bench_deg"] for row in RECORD.read(store).values()} == {BENCH}
-    assert update(LearningCurves(store, PARTS), 1, silent).computed == 0
-    assert path.read_bytes() == text
-    path.unlink()
-    assert update(LearningCurves(store, PARTS), 2, silent).computed == 4
-    assert path.read_bytes() == text
-    assert list_due(LearningCurves(store, PARTS)) == []
-    with pytest.raises(ValueError, match="workers"):
-        update(LearningCurves(store, PARTS), 0, silent)
-
-
-@pytest.mark.slow
-def test_what_is_of_other_code_data_or_leaders_is_named_and_renewed_alone(store):
-    update(LearningCurves(store, PARTS), 1, silent)
-    path = store / RECORD.name
-    text = path.read_bytes()
-    held = json.loads(text)
-    held["curves"][0]["key"] = "0" * 16
-    held["curves"][1]["model"] = "gone"
-    path.write_text(json.dumps(held), "utf-8")
-    said = list_due(LearningCurves(store, PARTS))
-    assert [why for _, why in said] == ["of other code or data", "absent", "no longer wanted"]
-    assert update(LearningCurves(store, PARTS), 1, silent).computed == 2
-    assert path.read_bytes() == text
-    changed = replace(
-        PARTS, presets={**PARTS.presets, "fake-other": Plane("fake-other", version=2)}
-    )
-    assert {leader.dataset for leader, _ in list_due(LearningCurves(store, changed))} == {
-        "fake-other"
-    }

@@ -169,15 +169,11 @@ def test_a_file_of_other_columns_or_no_text_is_named(store):
         store.scores()
 
 
-def test_a_corrupt_pin_is_named_too(store):
-    write(store, pins=[pin()])
-    right = store.pins_path.read_text()
-    store.pins_path.write_text(right + right.splitlines()[1] + "\n")
-    with pytest.raises(StoreError, match="line 3: d/c/test is there twice"):
-        store.pins()
-    store.pins_path.write_text(right.replace("test,1,3", "test,1,"))
-    with pytest.raises(StoreError, match=r"line 2.* n"):
-        store.pins()
+def test_a_file_where_the_tables_of_scores_should_be_is_refused(store):
+    store.directory.mkdir()
+    store.scores_directory.touch()
+    with pytest.raises(StoreError, match="scores: expected a directory of tables"):
+        store.scores()
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,6 @@ from benchmark.running.experiment import (
     RecordedExperiment,
     Report,
     list_due,
-    repeat_at_random,
     update,
 )
 
@@ -80,15 +79,23 @@ def test_the_file_is_the_same_for_any_number_of_workers(tmp_path: Path) -> None:
         computed(experiment, 0)
 
 
-def test_a_number_that_another_run_does_not_repeat_is_named(tmp_path: Path) -> None:
-    experiment = Squares(tmp_path)
-    computed(experiment)
-    assert list(repeat_at_random(experiment, 3, 1)) == []
+def test_a_number_that_another_run_does_not_repeat_is_named_and_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(running, "experiments", lambda: {"squares": Squares})
+    call = ["squares", "--directory", str(tmp_path)]
+    assert command.main(call) == 0
+    assert "squares: 3 of 3 cells measured" in capsys.readouterr().err
+    again = [*call, "--again", "3", "--seed", "1"]
+    assert command.main(again) == 0
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "3 cells of squares, drawn by --seed 1" in said.err
     path = tmp_path / "squares.json"
     path.write_text(path.read_text().replace("9.0", "9.1"))
-    ((cell, said),) = repeat_at_random(experiment, 3, 1)
-    assert cell == "3"
-    assert re.fullmatch(r"square\b.*\b9\.1\b.*\b9\.0", said)
+    assert command.main(again) == 1
+    (line,) = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r"squares\.json: 3: square\b.*\b9\.1\b.*\b9\.0\b.*", line)
 
 
 @pytest.mark.parametrize(

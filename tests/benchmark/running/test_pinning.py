@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import fake_plan
+import numpy as np
 import pytest
-from fake_atlas import Diodes
+from fake_atlas import Diodes, FakeBound
+from fake_results import pin as made_pin
 
 from benchmark import datasets
-from benchmark.contract import SPLITS, UnknownNameError
+from benchmark.contract import SPLITS
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.plan import combinations as plan
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import silent
+from benchmark.results.components import current
 from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import condition_data, pinning, runner
+from benchmark.running.condition_data import rms_bound
 from benchmark.running.pinning import UnversionedChangeError, changed_heads
 
 SMALL = ("pd-maskless-cube", "oi-maskless-pyramid")  # a second each
@@ -189,20 +194,63 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
     assert all(line.endswith("OSError: no data today") for line in gone)
 
 
+def test_the_error_names_every_data_set_with_its_first_change_and_keeps_all():
+    known = {one.place: one for one in (made_pin(), made_pin("calibration"), made_pin(dataset="a"))}
+    changed = [made_pin("calibration", n=4), made_pin(data_hash="x"), made_pin(dataset="a", n=9)]
+    with pytest.raises(UnversionedChangeError) as caught:
+        pinning.require_versions(known, changed)
+    said = str(caught.value)
+    assert re.findall(r"(\w) \((\w \w+): n (\d), pinned (\d)\)", said) == [
+        ("a", "c test", "9", "3"),
+        ("d", "c calibration", "4", "3"),
+    ]
+    assert "`version`" in said
+    assert list(caught.value.changes) == ["a", "d"]
+    assert len(caught.value.changes["d"]) == 2
+
+
+def test_only_what_is_missing_is_generated_and_counted(tmp_path):
+    class Broken(Diodes):
+        def generate(self, condition, split, n=None):
+            raise OSError("no data\ntoday")
+
+    parts = fake_plan.parts(presets=(Diodes(n=40), Broken(name="z", conditions=("quiet",))))
+    components = current(parts)
+    with open_record(Store(tmp_path)) as record:
+        seen = []
+        first = pinning.pin_missing(
+            record, components, parts, workers=1, progress=lambda *said: seen.append(said)
+        )
+        assert (first.kept, first.renewed) == (0, 2)
+        assert 0.0 < first.seconds < 600.0
+        (warning,) = first.warnings
+        assert warning.startswith("z quiet: ")
+        assert warning.endswith(": OSError: no data today")
+        assert seen == [
+            (0, 3, ""), (1, 3, "fake-diodes quiet"), (2, 3, "fake-diodes noisy"), (3, 3, "z quiet"),
+        ]  # fmt: skip
+        del record.pins["fake-diodes", "noisy", "repeat"]
+        del record._pin_keys["fake-diodes", "noisy", "repeat"]
+        again = pinning.pin_missing(
+            record, components, parts, workers=1, progress=silent, datasets=["fake-diodes"]
+        )
+        assert (again.kept, again.renewed, again.warnings) == (1, 1, ())
+
+
+def test_a_pinned_bound_is_the_root_mean_square_of_the_observable_first():
+    angle = np.array([3.0, np.inf, 4.0, 5.0, 100.0])
+    bound = FakeBound(angle, np.isfinite(angle))
+    assert rms_bound(bound, HEAD) == pytest.approx(np.sqrt(50 / 3), rel=1e-4)
+    assert rms_bound(bound, 2) == 3.0
+    assert rms_bound(bound) == pytest.approx(np.sqrt(10050 / 4), rel=1e-4)
+    assert rms_bound(FakeBound(angle, np.zeros(5, bool))) is None
+
+
 def test_scores_of_data_that_were_pinned_anew_are_dropped(store):
     there = parts(Diodes(), Diodes(name="fake-second"))
     runner.run(plan.cells(parts=there), store, progress=silent, parts=there)
     update(store, parts=parts(Diodes(version=2, seed=8), Diodes(name="fake-second")))
     assert {row["dataset"] for row in store.rows()} == {"fake-second"}
-
-
-def test_wrong_calls_are_refused(store):
-    with pytest.raises(ValueError, match=r"workers.*1.*0"):
-        update(store, workers=0)
-    with pytest.raises(UnknownNameError, match="did you mean 'fake-diodes'"):
-        update(store, datasets=["fake-diode"], parts=parts(Diodes()))
-    with open_record(store), pytest.raises(RuntimeError, match="another runner"):
-        update(store, parts=parts(Diodes()))
 
 
 def _some(*names):

@@ -99,17 +99,6 @@ def test_a_defect_of_an_implementation_is_planned_so_that_its_row_says_what_fail
     assert refused == {("fake-balanced", ""), ("fake-framed", "")}
 
 
-def test_filters_narrow_the_plan(parts):
-    found = plan.cells(conditions="noisy", extractors=["fake-gaps"], parts=parts)
-    assert found == [Cell("fake-diodes", "noisy", "fake-gaps", "fake-least-squares")]
-
-
-def test_a_condition_only_some_datasets_have_selects_those():
-    second = dataclasses.replace(fake_atlas.Diodes(), name="fake-other", conditions=("quiet",))
-    parts = fake_plan.parts(presets=(fake_atlas.Diodes(), second))
-    assert {c.dataset for c in plan.cells(conditions="noisy", parts=parts)} == {"fake-diodes"}
-
-
 @pytest.mark.parametrize(
     ("argument", "given", "nearest"),
     [

@@ -138,17 +138,6 @@ def test_each_split_is_generated_and_extracted_from_once_for_all_models(store, l
     assert len(extractions) == 2 * 3, "each split once, for two conditions"
 
 
-def test_data_that_change_are_measured_again_whatever_their_version(store):
-    measure(store)
-    before = store.scores(), store.pins()
-    changed = fake_plan.parts(presets=(fake_atlas.Diodes(seed=8),))
-    assert measure(store, changed).computed == 4
-    assert all(store.scores()[cell] != row for cell, row in before[0].items())
-    assert all(store.pins()[place].data_hash != pin.data_hash for place, pin in before[1].items())
-    assert measure(store).computed == 4
-    assert (store.scores(), store.pins()) == before
-
-
 def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
     class Wrong(fake_atlas.Currents):
         def extract(self, observations):
@@ -165,23 +154,6 @@ def test_an_extractor_or_dataset_that_fails_fails_its_cells_alone(store):
     assert "(400, 4); got float64 (400, 2)" in reasons["fake-diodes", "fake-currents"]
     assert reasons["fake-diodes", "fake-gaps"] == ""
     assert reasons["fake-empty", "fake-gaps"] == "generating data: OSError: no data today"
-
-
-def test_a_partial_run_drops_what_its_new_code_no_longer_vouches_for(store):
-    """A changed extractor measured under one condition: its other score is of older code."""
-    measure(store)
-    about = dataclasses.replace(fake_atlas.Gaps.about, version=2)
-    newer = type("Newer", (fake_atlas.Gaps,), {"about": about, "__module__": "fake_atlas"})
-    parts = fake_plan.parts()
-    parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-gaps": newer})
-    runner.run(
-        plan.cells(conditions="quiet", extractors="fake-gaps", parts=parts), store, parts=parts
-    )
-    assert {(row["condition"], row["extractor"]) for row in store.rows()} == {
-        ("quiet", "fake-currents"),
-        ("noisy", "fake-currents"),
-        ("quiet", "fake-gaps"),
-    }
 
 
 def test_ctrl_c_keeps_what_is_stored_and_says_so(store, log):

@@ -133,19 +133,6 @@ def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name)
 
 
 @pytest.mark.slow
-def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
-    known = discover_extractors()
-    some = {name: known[name] for name in ("voltage-balance", "direct", "escm-wta")}
-    one, two, grown = (tmp_path / name for name in ("one", "two", "grown"))
-    computed(one, some)
-    computed(two, some, 2)
-    computed(grown, {"direct": some["direct"]})
-    assert computed(grown, some) < 60
-    assert table(two) == table(one)
-    assert table(grown) == table(one)
-
-
-@pytest.mark.slow
 def test_pictures_are_the_same_every_time_and_well_formed(made):
     rows = swept(made)
     for sweep in sweep_pictures.DRAWN:

@@ -1,8 +1,7 @@
-"""Files of an export, part by part: archives of the same bytes, tables, checksums."""
+"""Files of an export, part by part: archives of the same bytes, tables."""
 
 from __future__ import annotations
 
-import hashlib
 import stat
 import zipfile
 from pathlib import Path
@@ -14,14 +13,6 @@ import pytest
 from benchmark.datasets.export import ExportError, export
 from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
 from benchmark.datasets.export_verification import verify
-from files.checksums import (
-    CHECKSUMS,
-    contents,
-    differences,
-    read_checksums,
-    write_checksums,
-)
-from files.reading import FileRefusedError
 
 ARRAYS = {
     "observations": np.arange(8.0).reshape(2, 4) / 3,
@@ -70,60 +61,6 @@ def test_columns_are_numbered_from_one_or_named_by_axis(tmp_path: Path) -> None:
     assert header.split(",") == list(found)
     assert first.split(",")[:2] == ["0.0", "0.3333333333333333"]
     assert second.split(",")[-2:] == ["False", "inf"]
-
-
-@pytest.fixture
-def directory(tmp_path: Path) -> Path:
-    (tmp_path / "deep").mkdir()
-    (tmp_path / "b.txt").write_text("b")
-    (tmp_path / "deep" / "a.txt").write_text("a")
-    write_checksums(tmp_path)
-    return tmp_path
-
-
-def test_every_file_is_listed_by_its_checksum_but_the_list(directory: Path) -> None:
-    write_checksums(directory)  # again: the list is no part of itself
-    assert contents(directory) == ["b.txt", CHECKSUMS, "deep/a.txt"]
-    assert (directory / CHECKSUMS).read_text() == "".join(
-        f"{hashlib.sha256(name.encode()).hexdigest()}  {path}\n"
-        for name, path in (("b", "b.txt"), ("a", "deep/a.txt"))
-    )
-    assert differences(directory) == []
-
-
-def test_what_is_missing_changed_new_or_no_file_is_told_in_order(directory: Path) -> None:
-    (directory / "b.txt").write_text("changed")
-    (directory / "new.txt").write_text("")
-    (directory / "deep" / "a.txt").unlink()
-    (directory / "deep" / "a.txt").symlink_to(directory / "b.txt")
-    changed = hashlib.sha256(b"changed").hexdigest()
-    listed = hashlib.sha256(b"b").hexdigest()
-    assert differences(directory) == [
-        ("b.txt", f"SHA-256 is {changed}, listed {listed}"),
-        ("deep/a.txt", "not a regular file"),
-        ("new.txt", "not listed"),
-    ]
-    (directory / "deep" / "a.txt").unlink()
-    assert ("deep/a.txt", "listed but missing") in differences(directory)
-
-
-@pytest.mark.parametrize(
-    ("line", "number"),
-    [
-        ("no checksum  x.txt", 3),
-        (f"{'0' * 63}  x.txt", 3),
-        (f"{'0' * 64}  /etc/passwd", 3),
-        (f"{'0' * 64}  deep/../../x", 3),
-        (f"{'0' * 64}  b.txt", 3),
-    ],
-)
-def test_a_line_that_is_no_checksum_is_named_by_its_number(
-    directory: Path, line: str, number: int
-) -> None:
-    with (directory / CHECKSUMS).open("a") as file:
-        file.write(line + "\n")
-    with pytest.raises(FileRefusedError, match=rf", line {number}: "):
-        read_checksums(directory)
 
 
 @pytest.mark.parametrize("n", [0, -1])
