@@ -104,21 +104,8 @@ def assess(
 ) -> list[MethodAssessment]:
     """Assess every method of the survey's table from published results.
 
-    Parameters
-    ----------
-    directory
-        Of the published files.
-    extractors
-        Implementations by name; those installed by default.
-    times
-        Published running times; none by default.
-    scores
-        Published scores of the standard unit, where they have been read already.
-
-    Raises
-    ------
-    StoreError, ComponentsError
-        When a stored file cannot be read.
+    `scores` are those of the standard unit, where they have been read already. StoreError,
+    ComponentsError when a stored file cannot be read.
     """
     known = discover_extractors() if extractors is None else extractors
     store = Store(directory)

@@ -57,10 +57,7 @@ def study_names() -> tuple[str, ...]:
 def get(name: str) -> Preset:
     """Return the dataset of this name, a standard one or the sensor of a study.
 
-    Raises
-    ------
-    UnknownDatasetError
-        Naming the nearest known one.
+    UnknownDatasetError names the nearest known one.
     """
     presets = {**_presets(), **_of_studies()}
     if name not in presets:

@@ -29,15 +29,7 @@ def reference_condition(preset: Preset, condition: str) -> str:
 
 
 def correction(preset: Preset, condition: str) -> ReferenceCorrection | None:
-    """Return the correction of this unit's readings; None where a sensor has no references.
-
-    Parameters
-    ----------
-    preset
-        Of any unit.
-    condition
-        Under which the readings were taken.
-    """
+    """Return the correction of this unit's readings; None where a sensor has no references."""
     shared, known = preset.conditions[0], reference_condition(preset, condition)
     names = (*preset.streams, preset.unit, known)
     unit = _Unit(names, preset.condition(known).sensor, preset.offered, preset)

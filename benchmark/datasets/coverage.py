@@ -80,19 +80,8 @@ def coverage(
 ) -> Coverage:
     """Compare what the mapped studies use with what is simulated.
 
-    Parameters
-    ----------
-    architectures
-        (detector, mask) by name of the dataset; of the standard ones by default.
-    known
-        The studies; the survey's by default.
-    reasons
-        Of pairs that are not simulated.
-
-    Raises
-    ------
-    CoverageError
-        Naming the pairs that have neither dataset nor reason, or a reason they do not need.
+    `architectures` are (detector, mask) by name of the data set. CoverageError names the pairs that
+    have neither data set nor reason, or a reason that they do not need.
     """
     mapped = known or facts()
     if architectures is None:

@@ -16,11 +16,7 @@ def method_bound_deg(
 ) -> Floats | None:
     """Return the bound (N,) in degrees of a method that reads more than one sample's signal.
 
-    Returns
-    -------
-    ndarray or None
-        None where the single samples' bound holds: of readings apart, and of methods that read
-        nothing else.
+    None where the single samples' bound holds: of methods that read nothing but readings apart.
     """
     posterior = getattr(preset, "posterior_bound_deg", None)
     return None if posterior is None else posterior(condition, context, bound)

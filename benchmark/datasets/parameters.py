@@ -28,13 +28,7 @@ def describe(value: object) -> Any:
     """Return dataclasses, mappings and tuples as JSON objects and arrays.
 
     A dataclass names its type.
-
-    Raises
-    ------
-    TypeError
-        For a value that has no spelling.
-    ValueError
-        For a number that is not finite, which JSON has none of.
+    TypeError for a value without a spelling; ValueError for a number that is not finite.
     """
     return to_plain(value, _exact, _members)
 

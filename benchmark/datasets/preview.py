@@ -32,10 +32,7 @@ _TILE, _ACROSS, _DOWN = 208, 4, 2
 def preview_png(preset: Preset, condition: str = "nominal") -> bytes:
     """Draw a dataset under a condition; returns PNG.
 
-    Raises
-    ------
-    ValueError
-        On an unknown condition, naming the known ones.
+    ValueError on an unknown condition, naming the known ones.
     """
     preset.condition(condition)
     with plain_style():

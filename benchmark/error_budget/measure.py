@@ -120,10 +120,7 @@ class _Chain:
     def errors(self) -> dict[str, Floats]:
         """Errors (N,) by variant, degrees; NaN where there is no answer.
 
-        Raises
-        ------
-        UnusableDataError
-            Where the model refuses the calibration as it is.
+        UnusableDataError where the model refuses the calibration as it is.
         """
         answers = self.as_is()
         if answers["as_is"] is None:

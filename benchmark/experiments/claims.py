@@ -7,10 +7,16 @@ from functools import partial
 
 from algorithms.threads import one_thread
 from benchmark.claims.experiment import find_experiments
-from benchmark.claims.outcomes import RECORD, outcome_of, outcome_of_row, plan_digest, row_of
+from benchmark.claims.outcomes import (
+    RECORD,
+    contradictions,
+    outcome_of,
+    outcome_of_row,
+    plan_digest,
+    row_of,
+)
 from benchmark.claims.plots import file_of, picture
 from benchmark.claims.rules import FIRST_TRIAL, claims
-from benchmark.claims.verification import contradictions
 from benchmark.results.modules import modules_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import RecordedExperiment

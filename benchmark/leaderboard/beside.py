@@ -19,11 +19,8 @@ _FEWEST_UNITS = 10
 def on_bench(rows: Iterable[Row]) -> dict[Cell, float]:
     """Return the root mean square error on drawn benches by pipeline, pooled over units.
 
-    Returns
-    -------
-    dict
-        By the cell of the standard unit under the first condition; pipelines that were calibrated
-        on benches on too few units are left out.
+    By the cell of the standard unit under the first condition; pipelines that were calibrated on
+    benches on too few units are left out.
     """
     squares: dict[Cell, list[float]] = {}
     for row in rows:
@@ -58,12 +55,9 @@ def expected_on_bench(
 def twins_of(rows: Iterable[Row]) -> dict[tuple[str, str, str], str]:
     """Return the pipelines whose numbers are those of another throughout.
 
-    Returns
-    -------
-    dict
-        By extractor, model and data set: the first pipeline of the same extractor with the same
-        numbers under every condition and on every unit that both have been scored on, as
-        ``extractor + model``. Pipelines without an error have no twin.
+    By extractor, model and data set: the first pipeline of the same extractor with the same numbers
+    under every condition and on every unit that both were scored on, as ``extractor + model``.
+    Pipelines without an error have no twin.
     """
     scores: dict[
         tuple[str, str], dict[tuple[str, str], dict[tuple[str, int], tuple[Any, ...]]]

@@ -8,7 +8,6 @@ the same for the same rows.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
@@ -135,7 +134,7 @@ def build(
         "metric_version": METRIC_VERSION,
         "units": UNITS,
         "datasets": datasets,
-        "timed_on": asdict(times.machine) if times.machine else None,
+        "timed_on": times.machine.model_dump() if times.machine else None,
         "sweeps": list(swept),
     }
 
@@ -177,10 +176,7 @@ def _with_folded(ranked: Sequence[Row]) -> list[dict[str, Any]]:
 def board_of(store: Store, times: Times = _NOT_TIMED) -> dict[str, Any]:
     """Build the leaderboard of a store, with the studies that used its pipelines.
 
-    Raises
-    ------
-    StoreError, ComponentsError
-        For a file that cannot be read.
+    StoreError, ComponentsError for a file that cannot be read.
     """
     rows = store.rows(unit=None)
     return build(rows, times, sweeps.swept(store.directory), studies_of_pipelines(), store.pins())
@@ -189,11 +185,7 @@ def board_of(store: Store, times: Times = _NOT_TIMED) -> dict[str, Any]:
 def best_of_extractors_first(ranked: Iterable[Row]) -> list[dict[str, Any]]:
     """Order the rows of one data set and condition as a board lists them.
 
-    Returns
-    -------
-    list of dict
-        The rows with ``best_of_extractor``: first those that rank before all others of their
-        extractor, then the others, each part as it was.
+    First those that rank before all others of their extractor, marked ``best_of_extractor``.
     """
     seen: set[str] = set()
     first: list[dict[str, Any]] = []
@@ -212,11 +204,7 @@ def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
     (`benchmark.metrics.rings.field_error`), and ranks by it within each dataset and condition.
     Ranks are not shared: rings have no spread. Rows without an error over the field come last, and
     a sensor has none over a wider field than its own: its outermost ring lies in the corners.
-
-    Raises
-    ------
-    ValueError
-        For an angle that is no ring's edge.
+    ValueError for an angle that is no ring's edge.
     """
     judged = [
         {

@@ -71,27 +71,10 @@ def rank(
 ) -> Ranking:
     """Score the pipelines with one algorithm and rank them among those of the record.
 
-    Parameters
-    ----------
-    name
-        Of an extractor, a model or a compensation.
-    dataset
-        Of the board.
-    record
-        What is on the board already; nothing is written to it.
-    work
-        Where new scores go; what it holds of the code as it is, is not measured again.
-    workers
-        Number of processes.
-    progress, parts
-        As `benchmark.running.runner.run`.
-
-    Raises
-    ------
-    UnknownNameError
-        For a name that discovery does not find, naming the nearest.
-    UnfitError
-        Where no pipeline with the algorithm fits the data set.
+    `name` is an extractor, a model or a compensation, `dataset` the board's. Nothing is written to
+    `record`; new scores go to `work`, and what it holds of the code as it is, is not measured
+    again. Other parameters as `benchmark.running.runner.run`. UnknownNameError for a name that is
+    not found, UnfitError where no pipeline with the algorithm fits the data set.
     """
     known = parts or installed_parts()
     known = Parts({dataset: known.preset(dataset)}, known.extractors, known.models)

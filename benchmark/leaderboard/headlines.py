@@ -93,10 +93,7 @@ class Headline:
 def read_differences(path: Path = FILE) -> Mapping[tuple[str, str], str]:
     """Return what is said of differences, by study and quantity.
 
-    Raises
-    ------
-    HeadlineError
-        For a broken line, an unknown quantity, nothing said, and what is said twice.
+    HeadlineError for a broken line, an unknown quantity, nothing said, and what is said twice.
     """
     records = read_records(path, list(COLUMNS))
     if records.problems:
@@ -123,17 +120,8 @@ def headlines(
     """Set every published number beside ours, the farthest apart first.
 
     A study is compared by its most accurate pipeline among those with the best evidence.
-
-    Parameters
-    ----------
-    scores
-        Rows of the standard unit by data set, condition, extractor and model.
-    studies
-        Mapped studies.
-    resolutions
-        What runs for each, by key.
-    differences
-        As `read_differences` gives them, by default the table's.
+    `scores` are rows of the standard unit by data set, condition, extractor and model;
+    `resolutions` say what runs for each study, by key.
     """
     said = read_differences() if differences is None else differences
     found = [

@@ -198,14 +198,8 @@ def sweeps_csv(board: Board) -> str:
 def to_html(board: Board, *, marked: Collection[tuple[str, str]] = (), note: str = "") -> str:
     """Write every table as a page that needs nothing beside itself.
 
-    Parameters
-    ----------
-    board
-        The leaderboard.
-    marked
-        Extractor and model of pipelines whose rows are marked.
-    note
-        A sentence below the legend.
+    `marked` are extractor and model of pipelines whose rows are marked, `note` is a sentence below
+    the legend.
     """
     import jinja2  # noqa: PLC0415 - only writing the page needs it
 
@@ -266,14 +260,7 @@ FORMATS: Mapping[str, Callable[[Board], str]] = {
 def render(board: Board, out: Path, *, for_spreadsheets: bool = False) -> list[Path]:
     """Write every derived file to a directory, each whole or not at all; returns their paths.
 
-    Parameters
-    ----------
-    board
-        The leaderboard.
-    out
-        The directory.
-    for_spreadsheets
-        Whether no spreadsheet shall run a cell of the CSV files (`csv_writing.escape_formulas`).
+    `for_spreadsheets`: no spreadsheet shall run a cell of the CSV files.
     """
     paths = []
     for name, made in FORMATS.items():

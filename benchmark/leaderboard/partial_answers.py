@@ -41,9 +41,7 @@ class PartialAnswer(Generic[Of]):
     def is_finer(self, error_deg: float) -> bool:
         """Return whether it is far more accurate than a given error, of at least half the samples.
 
-        Parameters
-        ----------
-        error_deg : infinite for none, than which nothing is more accurate
+        An infinite error stands for none, than which nothing is more accurate.
         """
         return self.coarse_deg < error_deg < math.inf
 
@@ -53,17 +51,8 @@ def better_partial_answer(
 ) -> PartialAnswer[Of] | None:
     """Return the most accurate partial answer, if it is far more accurate than a given error.
 
-    Parameters
-    ----------
-    error_deg
-        Error of the ranked pipeline; infinite for none, in which case None is returned.
-    partly
-        Candidates. Those that answer less than `LEAST_ANSWERED` of the samples are ignored.
-
-    Returns
-    -------
-    PartialAnswer or None
-        The first of equals; None unless `error_deg` is more than `FINER` times its error.
+    None unless `error_deg`, that of the ranked pipeline, is finite and more than `FINER` times its
+    error. Candidates that answer less than `LEAST_ANSWERED` of the samples are ignored.
     """
     finer = (one for one in partly if one.is_finer(error_deg))
     return min(finer, key=lambda one: one.error_deg, default=None)

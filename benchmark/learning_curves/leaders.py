@@ -46,10 +46,7 @@ class Leader:
 def leaders(scores: Iterable[Row], conditions: Mapping[str, str]) -> list[Leader]:
     """Return the leaders of every data set, best first within each.
 
-    Returns
-    -------
-    list of Leader
-        Sorted by data set and place; fewer than `LEADING` where there are no more models.
+    Fewer than `LEADING` where there are no more models.
     """
     boards: dict[str, list[Row]] = {}
     for row in scores:

@@ -43,11 +43,7 @@ def cells(
     """Every compatible combination of the named things (None: all), in sorted order.
 
     A condition is taken from the datasets that have it.
-
-    Raises
-    ------
-    UnknownNameError
-        For a name that is not installed, naming the nearest.
+    UnknownNameError for a name that is not installed, naming the nearest.
     """
     chosen = _Choice.of(parts or installed_parts(), datasets, conditions, extractors, models)
     return sorted(
@@ -97,10 +93,7 @@ def list_exclusions(
 def scorable_plan(*, parts: Parts | None = None) -> Plan:
     """Return what can be scored on each architecture: what a study's resolution is made from.
 
-    Returns
-    -------
-    mapping of (detector, mask) to mapping of (extractor, model) to tuple of str
-        Every pipeline that `cells` plans, with the names of its data sets, sorted.
+    By (detector, mask) every pipeline that `cells` plans, with the sorted names of its data sets.
     """
     chosen = _Choice.of(parts or installed_parts(), None, None, None, None)
     found: dict[tuple[str, str], dict[tuple[str, str], tuple[str, ...]]] = {}
@@ -113,13 +106,7 @@ def scorable_plan(*, parts: Parts | None = None) -> Plan:
 
 
 def study_plans(*, parts: Parts | None = None) -> dict[str, Plan]:
-    """Return by study what can be scored on its own sensor: `scorable_plan` of that alone.
-
-    Parameters
-    ----------
-    parts
-        Of sensors of single studies and implementations; those that are installed by default.
-    """
+    """Return by study what can be scored on its own sensor: `scorable_plan` of that alone."""
     known = parts or study_parts()
     found: dict[str, dict[str, Preset]] = {}
     for name, preset in known.presets.items():

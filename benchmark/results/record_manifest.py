@@ -41,12 +41,7 @@ def names(folder: Path) -> tuple[str, ...]:
 def changes(folder: Path, *, required: bool = False) -> list[Problem]:
     """Say what of a record no command wrote so, by file; an empty list where all holds.
 
-    Parameters
-    ----------
-    folder
-        Of the record.
-    required
-        Whether it must have a manifest; else one without has nothing to be held against.
+    One without a manifest has nothing to be held against, unless it is `required`.
     """
     if not (required or (folder / manifest.FILE).is_file()):
         return []
@@ -79,10 +74,7 @@ def is_unfinished(folder: Path) -> bool:
 def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False) -> bool:
     """Write files of a record and take them into its manifest, as `manifest.write_recorded`.
 
-    Raises
-    ------
-    StoreError
-        Where the manifest cannot be read; nothing has been written.
+    StoreError where the manifest cannot be read; nothing has been written.
     """
     try:
         if start and not os.path.lexists(folder / manifest.FILE) and (there := names(folder)):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from pydantic import BaseModel, PositiveFloat
+from pydantic import BaseModel, Field, PositiveFloat
 
 from benchmark.results.csv_tables import StoreError, above_zero, read_csv, word
 from files.reading import FileRefusedError, read_json, require_type
@@ -49,26 +49,10 @@ class Time:
         return self.dataset, self.extractor, self.model
 
 
-@dataclass(frozen=True)
-class Machine:
-    """The machine on which the reference loop takes `loop_us`.
+class Machine(BaseModel, frozen=True, extra="forbid"):
+    """The machine, measured first on `date`, on which the reference loop takes `loop_us`.
 
-    Attributes
-    ----------
-    processor
-        Its model.
-    cores
-        Number of cores used.
-    python, numpy
-        Versions.
-    date
-        Of the first measurement, ISO 8601.
-    loop
-        The reference loop in words.
-    loop_us
-        Its time there, microseconds.
-    also_on
-        Processors on which other rows were measured.
+    Other rows were measured on the processors `also_on`.
     """
 
     processor: str
@@ -77,19 +61,8 @@ class Machine:
     numpy: str
     date: str
     loop: str
-    loop_us: float
-    also_on: tuple[str, ...] = ()
-
-
-class _MachineFile(BaseModel, extra="forbid"):
-    processor: str
-    cores: int
-    python: str
-    numpy: str
-    date: str
-    loop: str
     loop_us: PositiveFloat
-    also_on: list[str]
+    also_on: list[str] = Field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -135,7 +108,7 @@ def read_times(directory: Path) -> Times:
 def _machine(path: Path) -> Machine:
     try:
         held = read_json(path)
-        require_type(held, _MachineFile, path)
+        require_type(held, Machine, path)
     except (FileNotFoundError, FileRefusedError) as error:
         raise StoreError(str(error)) from error
-    return Machine(**{**held, "also_on": tuple(held["also_on"])})
+    return Machine(**held)

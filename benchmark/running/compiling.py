@@ -121,20 +121,8 @@ def compile_kernels(
 
     What is compiled already is read from disk: a second call takes seconds. Where no cache can be
     written, nothing is gained.
-
-    Parameters
-    ----------
-    workers
-        Number of processes.
-    progress
-        Called after every data set, extractor and model.
-    parts
-        Data sets and implementations; what is installed by default.
-
-    Raises
-    ------
-    ValueError
-        When `workers` is below 1.
+    `progress` is called after every data set, extractor and model. ValueError when `workers` is
+    below 1.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")

@@ -213,17 +213,9 @@ def update(
     """Pin what is not pinned for the code as it is, and write the store.
 
     Scores of datasets whose code has changed are dropped: they are of other data, or may be.
-
-    Parameters as `pin_missing`.
-
-    Raises
-    ------
-    UnversionedChangeError
-        Where data changed while the dataset's version did not; nothing is written then.
-    UnknownNameError
-        For a dataset that is not installed.
-    StoreLockedError
-        When a runner writes to the store.
+    Parameters as `pin_missing`. UnversionedChangeError where data changed while the dataset's
+    version did not: nothing is written then. UnknownNameError for what is not installed,
+    StoreLockedError when a runner writes to the store.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")

@@ -206,10 +206,7 @@ def failures(cells: Iterable[Cell], record: Record) -> tuple[tuple[Cell, str], .
 def stale(cells: Iterable[Cell], store: Store, *, parts: Parts | None = None) -> list[Cell]:
     """List the cells that the store does not hold as code and data now are; renders nothing.
 
-    Raises
-    ------
-    UnknownNameError
-        For a cell whose names are not installed.
+    UnknownNameError for a cell whose names are not installed.
     """
     known = parts or installed_parts()
     wanted = known_cells(cells, known)

@@ -43,12 +43,7 @@ class TaskResult:
 def measure(task: Task, kept: KeptStages | None = None) -> TaskResult:
     """Score every model of a task; never raises for an implementation's error.
 
-    Parameters
-    ----------
-    task
-        What to measure.
-    kept
-        Where stages are kept; None to make all of them, and keep none.
+    Stages are taken from and put into `kept`, if any.
     """
     with one_thread():
         try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 import re
 from collections.abc import Callable, Iterator
@@ -101,8 +100,8 @@ def update(
                 done += len(timed)
                 machine = machine or _this_machine()
                 if (also := _processor()) not in {machine.processor, *machine.also_on}:
-                    machine = replace(machine, also_on=(*machine.also_on, also))
-                replace_file(directory / MACHINE, json.dumps(asdict(machine), indent=2) + "\n")
+                    machine = machine.model_copy(update={"also_on": [*machine.also_on, also]})
+                replace_file(directory / MACHINE, machine.model_dump_json(indent=2) + "\n")
                 table = [asdict(rows[place]) for place in sorted(rows)]
                 replace_file(directory / TIMES, text_of(list(COLUMNS), table))
                 report(done, len(missing), dataset)
@@ -111,9 +110,15 @@ def update(
 
 def _this_machine() -> Machine:
     loop_s = min(best_s(*[reference_loop] * 30))
-    today = datetime.now(UTC).date().isoformat()
-    python = platform.python_version()
-    return Machine(_processor(), 1, python, np.__version__, today, LOOP, _round(1e6 * loop_s))
+    return Machine(
+        processor=_processor(),
+        cores=1,
+        python=platform.python_version(),
+        numpy=np.__version__,
+        date=datetime.now(UTC).date().isoformat(),
+        loop=LOOP,
+        loop_us=_round(1e6 * loop_s),
+    )
 
 
 def _processor() -> str:

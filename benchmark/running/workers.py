@@ -36,25 +36,10 @@ def as_completed(
 ) -> Generator[B, None, None]:
     """Do work and yield each result as soon as it is there; what is not taken is given up.
 
-    Parameters
-    ----------
-    work
-        Pure function of an item, of a module.
-    items
-        Handed out one at a time, in order.
-    workers
-        Number of processes, of one thread each; with 1 all happens in this one, in order.
-    scheduler
-        Address of a Dask scheduler, such as ``tcp://127.0.0.1:8786``; `workers` is not read then.
-
-    Raises
-    ------
-    WorkerLostError
-        When a worker of this machine was killed.
-    ClusterError
-        As `benchmark.running.cluster.on_cluster`.
-    ImportError
-        Where `scheduler` is given and ``distributed`` is not installed.
+    `work` is a pure function of a module; items are handed out one at a time, in order. With one
+    worker all happens in this process; `scheduler` is the address of a Dask scheduler to use
+    instead, such as ``tcp://127.0.0.1:8786``. WorkerLostError when a worker was killed;
+    ClusterError and ImportError as `benchmark.running.cluster.on_cluster`.
     """
     if scheduler is not None:
         from benchmark.running.cluster import on_cluster  # noqa: PLC0415 - needs an extra

@@ -44,22 +44,8 @@ class CellPlan:
 def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None = None) -> CellPlan:
     """Say which cells would be measured, and why.
 
-    Parameters
-    ----------
-    cells
-        What is wanted.
-    stores
-        Where scores are looked up; a reason is by the first that holds the cell. Into the last
-        would be measured.
-    parts
-        Datasets and implementations; what is installed by default.
-
-    Raises
-    ------
-    UnknownNameError
-        For a cell whose names are not installed.
-    StoreError, ComponentsError
-        For a file that cannot be read.
+    A reason is by the first of the stores that holds the cell; into the last would be measured.
+    UnknownNameError for what is not installed; StoreError, ComponentsError for a broken file.
     """
     known = parts or every_part()
     wanted = known_cells(cells, known)

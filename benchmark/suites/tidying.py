@@ -41,12 +41,8 @@ class TidyResult:
 def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
     """Drop scores and pins of code or data that have changed or are gone.
 
-    Raises
-    ------
-    StoreLockedError
-        While a runner writes to the store.
-    StoreError, ComponentsError
-        For a file that cannot be read.
+    StoreLockedError while a runner writes to the store; StoreError, ComponentsError for a broken
+    file.
     """
     if not store.directory.is_dir():
         return TidyResult(0, 0, 0, 0)

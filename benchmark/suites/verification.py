@@ -60,19 +60,8 @@ def verify(
 ) -> VerificationResult:
     """Measure cells from nothing and compare them with the record.
 
-    Parameters
-    ----------
-    cells
-        Which; one that the record lacks is a difference.
-    record
-        That is verified; nothing is written to it.
-    workers, progress, scheduler, parts
-        As `benchmark.running.runner.run`, as are the errors.
-
-    Raises
-    ------
-    RunInterruptedError
-        On Ctrl-C; nothing is kept.
+    A cell that the record lacks is a difference; nothing is written to the record. Other parameters
+    and errors as `benchmark.running.runner.run`; on Ctrl-C nothing is kept.
     """
     wanted = sorted(set(cells))
     try:

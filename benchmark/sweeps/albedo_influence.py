@@ -72,18 +72,7 @@ def influence(name: str, samples: int | None = None) -> Influence:
     """Say how far the Earth's light moves the estimates of a dataset's sensor.
 
     `on_cube`, `on_balance` or `on_aperture`, whichever its sensor is for.
-
-    Parameters
-    ----------
-    name
-        Of the dataset.
-    samples
-        Only so many of the test split; None takes all.
-
-    Raises
-    ------
-    NoInfluenceError
-        For a sensor of another kind.
+    Of the first samples of the test split, or all. NoInfluenceError for a sensor of another kind.
     """
     preset = datasets.get(name)
     if isinstance(preset.condition(preset.conditions[0]).sensor, FaceSensor):

@@ -23,15 +23,7 @@ KEYS = ("methods", "constants", "benches", "sources", "poses")
 def findings_of(
     record: FindingsRecord, resolutions: Mapping[str, Resolution]
 ) -> tuple[Finding, ...]:
-    """Return the five findings, in the order of `KEYS`.
-
-    Parameters
-    ----------
-    record
-        The published scores.
-    resolutions
-        What runs for each study of the survey, by key.
-    """
+    """Return the five findings, in the order of `KEYS`."""
     architectures = {
         cell.dataset: (row["detector"], row["mask"]) for cell, row in record.rows.items()
     }

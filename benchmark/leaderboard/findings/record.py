@@ -90,12 +90,7 @@ class FindingsRecord:
     def ratio(self, cell: Cell, other: Cell, bench_deg: tuple[float, float] = (0.0, 0.0)) -> float:
         """Return a cell's error over another's: geometric mean over the units that both have.
 
-        Parameters
-        ----------
-        cell, other
-            Of one data set.
-        bench_deg
-            Errors of a bench that each is calibrated on, which add as squares.
+        `bench_deg` are errors of a bench that each is calibrated on, which add as squares.
         """
         return geometric_mean(
             [

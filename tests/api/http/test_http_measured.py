@@ -1,10 +1,8 @@
 """Scores, leaderboard and data sets, from a hand-made store whose every number is known."""
 
-import json
 import math
 import shutil
 import statistics
-from dataclasses import asdict
 
 import pytest
 
@@ -112,8 +110,16 @@ def measured(tmp_path_factory, client_of, published):
     rows[0] |= {"ratio": 1.25}
     del rows[2]
     (directory / times.TIMES).write_text(text_of(list(rows[0]), rows))
-    machine = times.Machine("fake", 1, "3.11", "2.4", "2026-11-28", "a loop", 4.0)
-    (directory / times.MACHINE).write_text(json.dumps(asdict(machine)))
+    machine = times.Machine(
+        processor="fake",
+        cores=1,
+        python="3.11",
+        numpy="2.4",
+        date="2026-11-28",
+        loop="a loop",
+        loop_us=4.0,
+    )
+    (directory / times.MACHINE).write_text(machine.model_dump_json())
     return client_of(create_app(Knowledge(Measurements(directory))))
 
 

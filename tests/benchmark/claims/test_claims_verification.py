@@ -11,9 +11,8 @@ import pytest
 
 from benchmark.claims.experiment import find_experiments
 from benchmark.claims.ledger import LedgerError, ledger
-from benchmark.claims.outcomes import RECORD, plan_digest, read_outcomes
+from benchmark.claims.outcomes import RECORD, contradictions, plan_digest, read_outcomes
 from benchmark.claims.rules import claims
-from benchmark.claims.verification import contradictions
 from benchmark.experiments import claims as experiment
 from benchmark.experiments.claims import Claims
 from benchmark.running.experiment import list_due, repeat_at_random
