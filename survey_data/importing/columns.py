@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
-from typing import Any
 
 import pandas as pd
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 from survey_data.importing.values import (
     UnreadableValueError,
@@ -34,14 +33,12 @@ _IDENTIFICATION = {
 }
 
 
-class ColumnMatch(BaseModel):
+class ColumnMatch(BaseModel, frozen=True):
     """A column and what it was taken for.
 
     `name_score` and `value_score` are from 0 to 1 (`value_score` is None where cells say nothing
     on the matter); `how` is ``similarity`` or ``override``.
     """
-
-    model_config = ConfigDict(frozen=True)
 
     column: str
     target: str
@@ -67,37 +64,22 @@ class ColumnMapping(BaseModel):
         targets = (match.target for match in self.matches)
         return tuple(dict.fromkeys(name for name in targets if name not in _IDENTIFICATION))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as JSON data."""
-        return self.model_dump(mode="json")
-
 
 def match_columns(
     tables: SurveyTables, frame: pd.DataFrame, overrides: Mapping[str, str] | None = None
 ) -> ColumnMapping:
-    """Match the columns of a table to studies and attributes.
+    """Match the columns of a table, as `read_table` gives it, to studies and attributes.
 
-    Parameters
-    ----------
-    tables : SurveyTables
-        Ours: the attributes, their vocabulary and the studies.
-    frame : pandas.DataFrame
-        Theirs, as `read_table` returns it.
-    overrides : mapping of str to str, optional
-        Column -> study, title, authors, year or an attribute, or ``-`` to leave the column aside.
-        Several columns may be given the same attribute; their values are united.
-
-    Returns
-    -------
-    ColumnMapping
-        Columns are matched one to one, the likeliest pair first; numbered columns (``Task 1``,
-        ``Task 2``) follow the one that was matched.
+    Columns are matched one to one, the likeliest pair first; numbered columns (``Task 1``, ``Task
+    2``) follow the one that was matched. `overrides` give a column's target: study, title, authors,
+    year or an attribute, or ``-`` to leave it aside; values of several columns of one attribute are
+    united.
 
     Raises
     ------
     SurveyImportError
-        An override names an unknown column or target, or no column identifies the study, or
-        none holds an attribute.
+        An override names an unknown column or target, or no column identifies the study, or none
+        holds an attribute.
     """
     scorer = _Scorer(tables, frame)
     known = list(scorer.labels)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 from files.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY
@@ -27,11 +27,7 @@ _OPEN = ("unknown", "ambiguous", "recalled")
 Kind = Literal["new", "changed", "conflict", "kept"]
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True)
-
-
-class IdentityDifference(_Frozen):
+class IdentityDifference(BaseModel, frozen=True):
     """A cell of a study that the bibliography says otherwise.
 
     ``new``: ours is empty. ``changed``: the identity was not confirmed, or the study was named to
@@ -47,23 +43,25 @@ class IdentityDifference(_Frozen):
     identity: str
     line: int
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as JSON data."""
-        return self.model_dump(mode="json")
+
+class LeftAside(BaseModel, frozen=True):
+    """A key of the bibliography that is no study of ours, or not read, and why."""
+
+    key: str
+    reason: str
 
 
-class BibliographyPlan(_Frozen):
+class BibliographyPlan(BaseModel, frozen=True):
     """What a bibliography changes in the table of studies.
 
-    ``settled`` are the studies whose identity it confirms; ``left_aside`` its keys that are no
-    study of ours, with the reason; ``missing`` our studies that it does not name.
+    ``settled`` are the studies whose identity it confirms; ``missing`` ours that it does not name.
     """
 
     source: str
     entries: int
     differences: tuple[IdentityDifference, ...]
     settled: tuple[str, ...]
-    left_aside: tuple[tuple[str, str], ...]
+    left_aside: tuple[LeftAside, ...]
     missing: tuple[str, ...]
     written: int = 0
 
@@ -76,11 +74,6 @@ class BibliographyPlan(_Frozen):
     def conflicts(self) -> tuple[str, ...]:
         """The studies of which ours stays, though the bibliography says otherwise."""
         return tuple(dict.fromkeys(d.study for d in self.differences if d.kind == "conflict"))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as JSON data."""
-        aside = [{"key": key, "reason": reason} for key, reason in self.left_aside]
-        return {**self.model_dump(mode="json"), "left_aside": aside}
 
 
 def import_bibliography(
@@ -103,11 +96,6 @@ def import_bibliography(
     apply : bool
         Write. Applying the same file twice changes nothing the second time.
 
-    Returns
-    -------
-    BibliographyPlan
-        What would be written, or has been.
-
     Raises
     ------
     SurveyImportError
@@ -119,36 +107,25 @@ def import_bibliography(
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     entries = read_bibliography(path)
     with locked_tables(folder) if apply else nullcontext():
-        plan = plan_identities(load(folder), entries, Path(path).name, frozenset(replace_studies))
+        plan = _plan(load(folder), entries, Path(path).name, frozenset(replace_studies))
         if not apply or not (plan.edits or plan.settled):
             return plan
         write_valid(folder, {_TABLE: _edit(folder, plan)})
         return plan.model_copy(update={"written": len(plan.edits)})
 
 
-def plan_identities(
-    tables: SurveyTables,
-    entries: Iterable[Entry],
-    source: str,
-    replaced: frozenset[str] = frozenset(),
+def _plan(
+    tables: SurveyTables, entries: Sequence[Entry], source: str, replaced: frozenset[str]
 ) -> BibliographyPlan:
-    """Compare entries with the table of studies; `replaced` are studies that they may contradict.
-
-    Raises
-    ------
-    SurveyImportError
-        The entries say nothing of one of `replaced`.
-    """
-    studies = tables.studies.astype("object").fillna("").astype(str).to_dict("records")
-    rows = {row["key"]: {str(name): cell for name, cell in row.items()} for row in studies}
+    """Compare entries with the table of studies, of which they may contradict those `replaced`."""
+    rows = {row["key"]: row for row in tables.studies.astype(object).fillna("").to_dict("records")}
     references = tables.references.fillna("")
     also = dict(zip(references["key"], references["mapped_key"], strict=True))
     differences: list[IdentityDifference] = []
     settled: list[str] = []
-    left: list[tuple[str, str]] = []
+    left: list[LeftAside] = []
     seen: set[str] = set()
-    count = 0
-    for count, entry in enumerate(entries, 1):  # noqa: B007 - told
+    for entry in entries:
         key = str(also.get(entry.key) or entry.key)
         reason = ""
         if key not in rows:
@@ -159,18 +136,19 @@ def plan_identities(
             reason = "no title can be read"
         if reason:
             if also.get(entry.key) != "":  # a work that the survey cites beside its studies
-                left.append((entry.key, reason))
+                left.append(LeftAside(key=entry.key, reason=reason))
             continue
         seen.add(key)
-        found = _differences(rows[key], entry, by_hand=key in replaced)
+        row = {str(name): str(cell) for name, cell in rows[key].items()}
+        found = _differences(row, entry, by_hand=key in replaced)
         differences += found
-        if rows[key]["identity"] in _OPEN or (key in replaced and found):
+        if row["identity"] in _OPEN or (key in replaced and found):
             settled.append(key)
     if unsaid := sorted(replaced - seen):
         raise SurveyImportError(f"{source} says nothing of {', '.join(unsaid)}, to be replaced")
     return BibliographyPlan(
         source=source,
-        entries=count,
+        entries=len(entries),
         differences=tuple(differences),
         settled=tuple(settled),
         left_aside=tuple(left),

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import Any
-
-import pandas as pd
 
 from survey_data.importing.values import normalise, similarity
 from survey_data.tables import SurveyTables
@@ -39,34 +36,24 @@ class StudyFinder:
                 entry = (_letters(parts[1]), parts[2])
                 self._by_author.setdefault(entry, []).append(key)
 
-    def find(self, key: str = "", title: str = "", authors: str = "", year: str = "") -> str:
-        """Return the key of the study a row is about.
+    def find(self, study: str = "", title: str = "", authors: str = "", year: str = "") -> str:
+        """Return the key of the study that a row is about by its key, title, or authors and year.
 
-        Parameters
-        ----------
-        key, title, authors, year : str
-            What the row says; empty where it says nothing. The first that decides is taken, in
-            this order; authors count together with the year.
-
-        Raises
-        ------
-        StudyNotFoundError
-            Says why none was found, or which several could be meant.
+        The first that decides is taken; StudyNotFoundError says why none does.
         """
-        found = self._by_key.get(key.strip().casefold())
+        found = self._by_key.get(study.strip().casefold())
         if found is not None:
             return found
-        reasons = [f"no study has the key {key!r}"] if key else []
-        try:
-            if title:
-                return self._find_title(title)
-        except StudyNotFoundError as error:
-            reasons.append(str(error))
-        try:
-            if authors and year:
-                return self._find_author(authors, year)
-        except StudyNotFoundError as error:
-            reasons.append(str(error))
+        reasons = [f"no study has the key {study!r}"] if study else []
+        for said, look in (
+            (title, lambda: self._find_title(title)),
+            (authors and year, lambda: self._find_author(authors, year)),
+        ):
+            try:
+                if said:
+                    return look()
+            except StudyNotFoundError as error:
+                reasons.append(str(error))
         raise StudyNotFoundError("; ".join(reasons) or "the row names no study")
 
     def _find_title(self, title: str) -> str:
@@ -102,11 +89,3 @@ class StudyFinder:
 
 def _letters(text: str) -> str:
     return normalise(text).replace(" ", "")
-
-
-def cell_text(frame: pd.DataFrame, row: int, column: str | None) -> str:
-    """Return a cell as text, '' where it is missing or there is no such column."""
-    if column is None:
-        return ""
-    cell: Any = frame.at[row, column]
-    return "" if pd.isna(cell) else str(cell)

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from difflib import SequenceMatcher
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 from survey_data.accuracy_classes import accuracy_class
 from survey_data.tables import SurveyTables
@@ -55,10 +55,8 @@ class UnreadableValueError(ValueError):
     """A cell's text is no value of the attribute."""
 
 
-class ValueMatch(BaseModel):
+class ValueMatch(BaseModel, frozen=True):
     """A piece of a cell and the value it was read as; score 1 is a known spelling."""
-
-    model_config = ConfigDict(frozen=True)
 
     attribute: str
     text: str
@@ -98,20 +96,10 @@ class ValueReader:
     def read(self, attribute: str, text: str, unit: str = "deg") -> list[ValueMatch]:
         """Return the values a cell states, in their order; an empty list where it states none.
 
-        Parameters
-        ----------
-        attribute : str
-            Attribute of attribute_definitions.csv.
-        text : str
-            The cell. Several values are parted by comma, semicolon, bar or line break, or by
-            slash, ampersand, plus or 'and' where the whole is not itself a value (ECM/Noise is).
-        unit : str
-            Unit of a number without one: deg, arcmin or arcsec.
-
-        Raises
-        ------
-        UnreadableValueError
-            A piece is no value of the attribute, or could be several.
+        Several values are parted by comma, semicolon, bar or line break, or by slash, ampersand,
+        plus or 'and' where the whole is not itself a value (ECM/Noise is). `unit` is that of a
+        number without one: deg, arcmin or arcsec. UnreadableValueError where a piece is no value,
+        or could be several.
         """
         if len(text) > _LONGEST:
             raise UnreadableValueError(

@@ -46,10 +46,7 @@ def rows_of(folder: Path, table: str) -> tuple[list[str], list[list[str]]]:
 def locked_tables(folder: Path) -> Iterator[None]:
     """Hold the tables from reading to writing; who else would write waits, and reads what is new.
 
-    Raises
-    ------
-    SurveyImportError
-        Nothing can be written there.
+    SurveyImportError where nothing can be written.
     """
     with ExitStack() as stack:
         try:
@@ -62,21 +59,9 @@ def locked_tables(folder: Path) -> Iterator[None]:
 
 
 def write_valid(folder: Path, texts: Mapping[str, str], *, together: str | None = None) -> None:
-    """Replace tables, by name, by texts.
+    """Replace tables, by name, by texts; those `together` in a sub-folder change in one step.
 
-    Parameters
-    ----------
-    folder
-        Of the tables.
-    texts
-        New text of each table.
-    together
-        Sub-folder that all of them stand in: they then change in one step.
-
-    Raises
-    ------
-    SurveyImportError
-        The tables would be invalid, or the file cannot be written; nothing has been written.
+    SurveyImportError where they would be invalid or cannot be written; nothing has been written.
     """
     try:
         require_valid(folder, texts)

@@ -95,8 +95,7 @@ def test_a_comparison_shows_what_differs_and_writes_nothing(copy: Any) -> None:
     assert kinds["Duan2006", "type"] == "new"
     assert kinds["Chang2008", "title"] == "conflict"  # a page has confirmed ours
     assert plan.settled == ("Duan2006", "Fan2017", "Mafi2023")
-    left_aside = dict(plan.left_aside)
-    assert set(left_aside) == {"Knuth1984"}
+    assert [aside.key for aside in plan.left_aside] == ["Knuth1984"]
     assert len(plan.missing) == 129 - 4
     assert plan.written == 0
 
@@ -129,7 +128,7 @@ def test_the_first_of_two_entries_of_a_key_is_taken(copy: Any) -> None:
     twice = "@article{Fan2017, title={One}}\n@article{Fan2017, title={Two}}\n"
     plan = import_bibliography(offer(copy, twice), copy.directory)
     assert [d.theirs for d in plan.differences if d.column == "title"] == ["One"]
-    assert plan.left_aside[0][0] == "Fan2017"
+    assert plan.left_aside[0].key == "Fan2017"
 
 
 @pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "% nothing"])
@@ -246,7 +245,7 @@ def test_a_bibliography_of_every_key_completes_every_identity_by_one_call(copy: 
     assert {key: cells(copy, key) for key in keys} == before  # nothing is written yet
     assert shown.missing == ()
     assert shown.conflicts
-    assert {keys[0], "Knuth1984"} <= dict(shown.left_aside).keys()
+    assert {keys[0], "Knuth1984"} <= {aside.key for aside in shown.left_aside}
 
     import_bibliography(path, copy.directory, apply=True)
     assert validate(copy.directory) == []

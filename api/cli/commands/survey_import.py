@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from pydantic import BaseModel
 
 import survey_data
 from api.cli.survey_options import ApplyOption, DataOption
@@ -80,9 +81,9 @@ def import_(
         file, data, overrides=_overrides(mapped or ()), sheet=sheet, apply=apply
     )
     if form is Format.JSON:
-        emit_json(plan.to_dict())
+        emit_json(plan.model_dump(mode="json"))
     elif form is Format.CSV:
-        emit([d.to_dict() for d in (*plan.differences, *plan.confirmed)], CELLS, form)
+        emit(_rows((*plan.differences, *plan.confirmed)), CELLS, form)
     else:
         _print(plan)
     for problem in plan.errors:
@@ -98,9 +99,9 @@ def _bibliography(
     if file is None:
         return
     plan = survey_data.import_bibliography(file, data, replace_studies=replaced, apply=apply)
-    rows = [difference.to_dict() for difference in plan.differences]
+    rows = _rows(plan.differences)
     title = f"{len(rows)} cells of studies that {plan.source} says otherwise"
-    emit(rows, IDENTITIES, form, document=plan.to_dict(), title=title)
+    emit(rows, IDENTITIES, form, document=plan.model_dump(mode="json"), title=title)
     if form is not Format.TABLE:
         return
     if plan.conflicts:
@@ -108,8 +109,8 @@ def _bibliography(
         say(f"confirmed and said otherwise: {keys}; --replace KEY takes what the file says")
     for kept in (found for found in plan.differences if found.kind == "kept"):
         say(f"{kept.study}: published in {kept.theirs} there; the year of the key stays")
-    for key, reason in plan.left_aside:
-        say(f"left aside: {key}: {reason}")
+    for aside in plan.left_aside:
+        say(f"left aside: {aside.key}: {aside.reason}")
     if plan.missing:
         say(f"{len(plan.missing)} studies are not in it: {', '.join(plan.missing)}")
     many = "identity" if len(plan.settled) == 1 else "identities"
@@ -120,6 +121,10 @@ def _bibliography(
         typer.echo(f"Nothing written; --apply writes {what}.")
     else:
         typer.echo("Nothing written.")
+
+
+def _rows(differences: Sequence[BaseModel]) -> list[dict[str, Any]]:
+    return [difference.model_dump(mode="json") for difference in differences]
 
 
 def _overrides(mapped: Sequence[str]) -> dict[str, str]:
@@ -137,14 +142,14 @@ def _overrides(mapped: Sequence[str]) -> dict[str, str]:
 
 
 def _print(plan: ImportPlan) -> None:
-    mapping = plan.mapping.to_dict()
+    listed = plan.model_dump(mode="json")
+    mapping = listed["mapping"]
     columns = ("column", "target", "score", "name_score", "value_score", "how")
     emit(mapping["matches"], columns, Format.TABLE, title=f"Columns of {plan.source}")
     if mapping["ignored"]:
         say(f"left aside: {', '.join(mapping['ignored'])}")
-    cells = [d.to_dict() for d in (*plan.differences, *plan.confirmed)]
+    cells = [*listed["differences"], *listed["confirmed"]]
     emit(cells, CELLS, Format.TABLE, title=f"{len(cells)} cells that differ")
-    listed = plan.to_dict()
     if listed["guesses"]:
         emit(
             listed["guesses"],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import threading
 from pathlib import Path
 from typing import Any
@@ -50,8 +49,7 @@ def test_a_comparison_writes_nothing_and_shows_every_kind(copy: Any) -> None:
     assert [(entry.row, entry.reason) for entry in plan.unmatched] == [
         (4, "no study has the key 'Nobody1999'")
     ]
-    assert plan.matched == ((2, "Alvi2014"), (3, "Chang2008"))
-    assert json.loads(json.dumps(plan.to_dict()))["differences"][0]["study"] == "Alvi2014"
+    assert [(one.row, one.study) for one in plan.matched] == [(2, "Alvi2014"), (3, "Chang2008")]
 
 
 @pytest.mark.slow

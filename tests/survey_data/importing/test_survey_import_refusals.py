@@ -140,7 +140,7 @@ def test_a_study_is_found_by_a_misprinted_title_and_by_a_key_without_a_year(
     finder: StudyFinder,
 ) -> None:
     assert finder.find(title="A sundial of polish brass") == "Timeless"
-    assert finder.find(key="timeless") == "Timeless"
+    assert finder.find(study="timeless") == "Timeless"
     with pytest.raises(StudyNotFoundError, match="no study by 'Timeless' of 2001"):
         finder.find(authors="Timeless", year="2001")
 

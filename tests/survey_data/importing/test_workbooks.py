@@ -58,15 +58,11 @@ CELL = b'<row r="%d"><c r="%b%d"><v>1</v></c></row>'
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
-        (CELL % (2, b"A", 2), "row 2 stands twice or out of order"),
-        (CELL % (9, b"A", 9) + CELL % (5, b"A", 5), "row 5 stands twice or out of order"),
-        (b'<row r="9"><c r="B9"/><c r="A9"/></row>', "cell A9 stands twice or out of order"),
-        (CELL % (10**9, b"A", 10**9), "has a row 1000000000, a sheet 1048576"),
+        (CELL % (10**9, b"A", 10**9), "has more than 1048576 rows"),
         (CELL % (9, b"ZZZZ", 9), "is not a readable XLSX workbook"),
         (b'<row r="9"><c r="A9" t="s"><v>99</v></c></row>', "is not a readable XLSX workbook"),
         (b'<row r="9">' + b"<c/>" * 300_001 + b"</row>", "has more than 300000 cells"),
         (b"".join(b'<row r="%d"><c r="XFD%d"/></row>' % (n, n) for n in range(5, 50)), "300000 c"),
-        (b"<a/>" * 2_000_001, f"{SHEET} has more than 2000000 tags"),
         (b" " * 20_000_000, "unpacks to more than 20000000 bytes"),
     ],
 )
