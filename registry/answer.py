@@ -81,13 +81,7 @@ class RankedArchitecture:
 
 
 class Answer:
-    """Architectures that meet a question, best first.
-
-    Parameters
-    ----------
-    question : requirements put to a table of designs
-    sort : order of the architectures
-    """
+    """Architectures that meet a question, best first in the order of `sort`."""
 
     def __init__(self, question: Question, sort: Sort) -> None:
         self.question = question

@@ -71,12 +71,7 @@ class Implementation:
 class Catalogue:
     """Implementations by name and by taxonomy value.
 
-    Parameters
-    ----------
-    extractors, models : mapping of name to class
-        An implementation whose taxonomy value is not in `taxonomy`, or whose name is another's,
-        raises ValueError.
-    taxonomy : Taxonomy
+    One whose taxonomy value is not in `taxonomy`, or whose name is another's, raises ValueError.
     """
 
     def __init__(

@@ -202,12 +202,8 @@ class DesignTable:
     ) -> Numbers:
         """Return the errors that a share of units (and benches) stays within, of some pipelines.
 
-        Parameters
-        ----------
-        own_error_deg : own errors of all pipelines
-        among : those of them that are looked at, as flags or positions
-        bench_deg : error of the bench; None or 0 for true directions
-        share : of units and benches
+        `own_deg` is of all pipelines, `among` those that are looked at, as flags or positions; a
+        bench error of None or 0 is for true directions.
         """
         if bench_deg:
             return at_confidence(own_error_deg[among], self.unit_ratios[among], bench_deg, share)

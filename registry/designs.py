@@ -72,13 +72,7 @@ class Place:
 
 
 def gather(facts: Facts, measurements: Measurements) -> tuple[Place, ...]:
-    """Return the architectures that are studied, built or measured, in the order of the taxonomy.
-
-    Parameters
-    ----------
-    facts : Facts
-    measurements : Measurements
-    """
+    """Return what is studied, built or measured, in the order of the taxonomy."""
     order = {
         attribute: {v: i for i, v in enumerate(facts.taxonomy.values(attribute))}
         for attribute in ("detector", "mask", "extractor", "model")

@@ -37,13 +37,9 @@ _SHARES = [(at + 0.5) / UNITS for at in range(UNITS)]
 def unit_ratios(errors_deg: Sequence[float], spread: float) -> tuple[float, ...]:
     """Return errors of ten units over their geometric mean, ascending.
 
-    Parameters
-    ----------
-    errors_deg
-        Of the units measured, the standard one first.
-    spread
-        Standard deviation of the log errors of units of the data set: of what was measured on
-        fewer than five units, the standard unit's error is taken as the middle of such a spread.
+    `errors_deg` are of the units measured, the standard one first. Of what was measured on fewer
+    than five units, the standard one's error is taken as the middle of log errors of this standard
+    deviation, which is that of units of the data set.
     """
     if len(errors_deg) < FEWEST_UNITS:
         normal = NormalDist()
@@ -58,16 +54,8 @@ def at_confidence(
 ) -> Numbers:
     """Return the errors (R,) that a share of the draws keeps within, of R pipelines.
 
-    Parameters
-    ----------
-    own_error_deg
-        Own errors (R,); infinite where there is none.
-    ratios
-        Of units (R, units) over these, ascending.
-    bench_deg
-        Root mean square of the fixed errors of the benches.
-    share
-        Of the draws.
+    `own_deg` (R,) is infinite where there is none; `ratios` (R, units) of units over these ascend;
+    `bench_deg` is the root mean square of the fixed errors of the benches.
     """
     reach, unit, bench = _largest_draws(share)
     squares = ((own_error_deg[:, None] * ratios) ** 2)[:, unit] + ((bench_deg * _BENCHES) ** 2)[
@@ -91,14 +79,8 @@ def bench_for(own_error_deg: Numbers, ratios: Numbers, limit_deg: float, share: 
     """Return the largest bench error (R,) with which a share of the draws meets a limit.
 
     A draw meets it up to the bench error that takes its squares to the limit's: of these, the one
-    that the share of the draws reaches. At most the limit; 0 where none would do.
-
-    Parameters
-    ----------
-    own_error_deg, ratios
-        As `at_confidence`.
-    limit_deg, share
-        What is asked for.
+    that the share of the draws reaches. At most the limit; 0 where none would do. Arrays as for
+    `at_confidence`.
     """
     reach, unit, bench = _largest_draws(share)
     most = np.sqrt(np.maximum(limit_deg**2 - (own_error_deg[:, None] * ratios) ** 2, 0.0))

@@ -75,13 +75,7 @@ class PairEvidence:
 class Evidence:
     """What is measured of pairs of values, what could be, and what cannot.
 
-    Parameters
-    ----------
-    catalogue : Catalogue
-    measured : sequence of Measured
-        What is measured of every pipeline on every data set.
-    plan : Plan
-        Every pipeline that can be scored, by architecture.
+    Of `measured` pipelines, and of a plan: every pipeline that can be scored, by architecture.
     """
 
     def __init__(
@@ -127,14 +121,8 @@ class Evidence:
     ) -> PairEvidence:
         """Return what is known of two (level, value).
 
-        Parameters
-        ----------
-        row, column
-            The values.
-        studied
-            Studies that have both.
-        unknown
-            Studies that have one, and of which the other is unknown.
+        `studied` are the studies that have both; `unknown` those that have one, and of which the
+        other is unknown.
         """
         ours, theirs = self._runs(*row), self._runs(*column)
         both = ours & theirs

@@ -80,15 +80,8 @@ class FittedPipeline:
 class PipelinesOfStudy:
     """The plan's pipelines by a study's methods.
 
-    Parameters
-    ----------
-    plan : Plan
-        Names that the catalogue does not have are passed over.
-    catalogue : Catalogue
-    facts : Facts
-        What is said of studies beyond their values.
-    is_own : bool
-        Whether the plan is that of one study's own sensor.
+    Names of the plan that the catalogue does not have are passed over. `is_own`: the plan is that
+    of one study's own sensor.
     """
 
     def __init__(

@@ -219,12 +219,8 @@ def drawn(
 ) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
     """Return the nodes and links of a chart, in its order.
 
-    Parameters
-    ----------
-    levels : of the chart
-    on_node, on_link : weights by study of a value at the level of a position, and of such a value
-        and one at the next level
-    taxonomy, counting : order and names of the values; what a node and a link count
+    `on_node` and `on_link` are weights by study of a value at the level of a position, and of such
+    a value and one at the next level.
     """
     order = [{v: i for i, v in enumerate(taxonomy.values(level))} for level in levels]
 

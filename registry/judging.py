@@ -59,12 +59,7 @@ def _shared(*names: str) -> Callable[[Callable[[Question], Found]], cached_prope
 
 
 class Question:
-    """Requirements applied to a table of designs.
-
-    Attributes
-    ----------
-    table, requirements : what is asked of what
-    """
+    """Requirements applied to a table of designs."""
 
     def __init__(self, table: DesignTable, requirements: Requirements) -> None:
         self.table = table

@@ -46,16 +46,11 @@ class Score:
 
 @dataclass(frozen=True)
 class PipelineJudgement:
-    """Largest error of a pipeline over the required field and conditions.
+    """Largest RMS error of a pipeline over the required field and conditions.
 
-    Attributes
-    ----------
-    error_deg
-        RMS error; infinite where the availability is too low or the field too narrow.
-    condition
-        Condition under which that error was measured.
-    field_deg
-        Full field of view that the error covers.
+    ``error_deg`` is infinite where the availability is too low or the field too narrow;
+    ``condition`` is that under which it was measured, ``field_deg`` the full field of view that it
+    covers.
     """
 
     error_deg: float
@@ -158,10 +153,7 @@ class MeasuredPipeline:
 class Measurements:
     """All measured pipelines; make it once and pass it to many calls.
 
-    Parameters
-    ----------
-    rows : iterable of MeasuredPipeline
-        Pipelines without an error under the first condition are left out.
+    Pipelines without an error under the first condition are left out.
     """
 
     def __init__(self, rows: Iterable[MeasuredPipeline] = ()) -> None:

@@ -41,13 +41,7 @@ RULE = (
 
 
 class Possibility:
-    """Says of two values of the taxonomy why they cannot go together.
-
-    Parameters
-    ----------
-    catalogue : Catalogue
-        The implementations, and the taxonomy of the values.
-    """
+    """Says of two values of a catalogue's taxonomy why they cannot go together."""
 
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue

@@ -71,12 +71,8 @@ def task_measure(
 ) -> TaskMeasure:
     """Return a task's own measure of an architecture.
 
-    Parameters
-    ----------
-    task : of the taxonomy
-    place : the architecture
-    row, error_deg : its most accurate pipeline and the error shown; None and infinite for none
-    factor : time of the reader's processor, relative to the machine of the published times
+    `row` and `error_deg` are its most accurate pipeline and the error shown, None and infinite for
+    none; `factor` is the time of the reader's processor over that of the published times.
     """
     unit = _UNITS[task]
     if task in _PUBLISHED:
@@ -120,9 +116,7 @@ def _of_products(task: str, place: Place) -> TaskMeasure:
 def joint_order(costs: Sequence[Sequence[tuple[float, ...]]]) -> list[float]:
     """Return for each architecture the sum of its places in the orders of several tasks.
 
-    Parameters
-    ----------
-    costs : for each task, what each architecture is ordered by
+    `costs` is for each task what each architecture is ordered by.
     """
     total = [0.0] * len(costs[0])
     for of_task in costs:

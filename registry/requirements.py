@@ -208,14 +208,9 @@ class Requirements:
     ) -> Self:
         """Make requirements from named parameters, and check them.
 
-        Parameters
-        ----------
-        parameters : mapping
-            Names of `PARAMETERS` and `SETTINGS`, and ``mission``; one or several values for
-            categories, a number for limits. None and empty collections are no requirement.
-        taxonomy : Taxonomy
-        properties : collection of str
-            Names of the properties in the survey's assessment.
+        Parameters are `PARAMETERS`, `SETTINGS`, and ``mission``; one or several values for
+        categories, a number for limits. None and empty collections are no requirement. `properties`
+        are those of the survey's assessment.
 
         Raises
         ------

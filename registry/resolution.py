@@ -151,13 +151,7 @@ def resolve_later(
     catalogue: Catalogue | None = None,
     scores: Scores | None = None,
 ) -> dict[str, Resolution]:
-    """`resolve` of studies the survey does not map, by key; relatives are the survey's alone.
-
-    Parameters
-    ----------
-    plan, data_sets, catalogue, scores : as of `resolve`
-    survey, every : facts of the survey, and of both editions
-    """
+    """`resolve` of studies that the survey does not map, by key; their relatives are its own."""
     later = (study for key, study in every.studies.items() if key not in survey.studies)
     fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), survey)
     return {study.key: _resolve(study, fitting, data_sets or {}, scores) for study in later}

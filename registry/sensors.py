@@ -71,14 +71,8 @@ def sensors(
 ) -> tuple[Sensor, ...]:
     """Return what a study is run on: its own architectures, or those that rules give it.
 
-    Parameters
-    ----------
-    study, facts
-        The study, and all of them with the rules of empty cells.
-    simulated
-        Architectures that there are data sets of; others are left out.
-    runs
-        How many of the study's own methods run on an architecture.
+    Architectures that are not `simulated` are left out; `runs` counts the study's own methods that
+    run on one.
     """
     known = frozenset(simulated)
     filled = {attribute: _fill(study, attribute, facts.defaults) for attribute in SENSOR}
@@ -99,13 +93,6 @@ def own_sensors(
     """Return what data sets made after a study alone have, whatever else its mapping infers.
 
     A value that the mapping does not have is inferred from what is known of the built sensor.
-
-    Parameters
-    ----------
-    study, facts
-        The study, and what is said of its sensor.
-    architectures
-        Of its data sets.
     """
 
     def part(attribute: str, value: str) -> Part:

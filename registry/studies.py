@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 
 from files.reading import parse_decimal
 from registry.fidelity.particulars import (
@@ -17,15 +17,11 @@ from registry.fidelity.particulars import (
     MethodVariant,
     PurposeRule,
     RunFact,
-    compensated_model,
     conditions,
     hardware_facts,
-    method_variant,
     purpose_rule,
-    run_fact,
 )
 from registry.mapping.advice import Advice
-from registry.mapping.mapping_tables import Tables, rows_of
 from registry.mapping.study import (
     METHODS,
     AttributeValue,
@@ -47,7 +43,6 @@ from survey_data.editions import (
     CHOICES,
     EXTENSION,
     EXTENSION_TABLES,
-    SURVEY,
     Choice,
 )
 from survey_data.reported import KIND_OF, statistics
@@ -153,10 +148,7 @@ _TABLES = (
 def facts(edition: Choice = "survey") -> Facts:
     """Return an edition's studies and the taxonomy, read once.
 
-    Parameters
-    ----------
-    edition : {"survey", "all"}
-        The survey's studies, or these and then those after it.
+    The edition ``all`` has the survey's studies, and then those after it.
 
     Raises
     ------
@@ -189,14 +181,7 @@ def _facts(edition: Choice) -> Facts:
 def study_from(rows: Mapping[str, Sequence[Mapping[str, str]]]) -> Study:
     """Return a study the survey does not map that is in no table yet.
 
-    Parameters
-    ----------
-    rows : by table of the extension, without its prefix; one row of ``studies``
-
-    Raises
-    ------
-    FactsError, SurveyDataError
-        As `facts`.
+    `rows` are by table of the extension, without its prefix; one of ``studies``. Raises as `facts`.
     """
     tables = load_texts(_TABLES)
     for table in BY_STUDY:
@@ -220,13 +205,13 @@ def study(key: str) -> Study:
     return facts().study(key)
 
 
-def facts_from(tables: Tables) -> Facts:
-    """Facts from tables with the survey's columns.
+def facts_from(tables: SimpleNamespace) -> Facts:
+    """Facts from tables with the survey's columns, as `load_texts` gives them.
 
     Raises InvalidValueError for a value outside the taxonomy and ValueError for attributes of a
     study that is not in the table of studies.
     """
-    rings = {("model", row["model"]): row["calibration"] for row in rows_of(tables.model_families)}
+    rings = {("model", row["model"]): row["calibration"] for row in tables.model_families}
     taxonomy = Taxonomy(
         TaxonomyEntry(
             attribute=row["attribute"],
@@ -236,11 +221,11 @@ def facts_from(tables: Tables) -> Facts:
             section=row["survey_section"],
             calibration=rings.get((row["attribute"], row["value"]), ""),
         )
-        for row in rows_of(tables.taxonomy)
+        for row in tables.taxonomy
     )
     stated: dict[str, dict[str, list[AttributeValue]]] = {}
     unknown: dict[str, dict[str, str]] = {}
-    for row in rows_of(tables.attributes):
+    for row in tables.attributes:
         key, attribute, value = row["study"], row["attribute"], row["value"]
         if value == "":
             unknown.setdefault(key, {})[attribute] = row["note"]
@@ -254,39 +239,29 @@ def facts_from(tables: Tables) -> Facts:
         cell = AttributeValue(value, row["basis"], row["source"], row["note"])
         stated.setdefault(key, {}).setdefault(attribute, []).append(cell)
     roles: dict[str, dict[tuple[str, str], MethodRole]] = {}
-    for row in rows_of(tables.roles):
+    for row in tables.roles:
         role = MethodRole(row["role"], row["basis"], row["source"], row["note"])
         roles.setdefault(row["study"], {})[row["attribute"], row["value"]] = role
     combined: dict[str, tuple[tuple[str, str], ...]] = {}
-    for row in rows_of(tables.architectures):
+    for row in tables.architectures:
         pair = (row["detector"], row["mask"])
         combined[row["study"]] = (*combined.get(row["study"], ()), pair)
     names, verified = _names(tables), _verify(tables)
     found: dict[str, Study] = {}
-    for row in rows_of(tables.studies):
+    for row in tables.studies:
         key = row["key"]
         if key in found:
             raise ValueError(f"study {key!r} stands twice in the table of studies")
         found[key] = Study(
-            key=key,
-            title=row["title"],
-            authors=row["authors"],
-            year=int(float(row["year"])) if row["year"] else None,
-            venue=row["venue"],
-            doi=row["doi"],
-            url=row["url"],
-            identity=row["identity"],
-            note=row["note"],
+            **{**row, "year": int(row["year"]) if row["year"] else None},
             values=MappingProxyType(
                 {attribute: tuple(cells) for attribute, cells in stated.pop(key, {}).items()}
             ),
             unknown=MappingProxyType(unknown.pop(key, {})),
             roles=MappingProxyType(roles.get(key, {})),
             combinations=combined.get(key, ()),
-            edition=row.get("edition", SURVEY),
             names=MappingProxyType(names.get(key, {})),
             verifications=tuple(verified.get(key, ())),
-            type=row.get("type", "unknown"),
         )
     strangers = sorted({*stated, *unknown})
     if strangers:
@@ -296,39 +271,39 @@ def facts_from(tables: Tables) -> Facts:
     return Facts(
         MappingProxyType(found),
         taxonomy,
-        tuple(map(_default, rows_of(tables.defaults))),
-        tuple(map(_advice, rows_of(tables.advice))),
+        tuple(map(_default, tables.defaults)),
+        tuple(map(_advice, tables.advice)),
         _properties(tables, taxonomy),
-        tuple(map(purpose_rule, rows_of(tables.purposes))),
-        tuple(map(compensated_model, rows_of(tables.compensated_models))),
-        tuple(map(method_variant, rows_of(tables.method_variants))),
+        tuple(map(purpose_rule, tables.purposes)),
+        tuple(CompensatedModel(**row) for row in tables.compensated_models),
+        tuple(MethodVariant(**row) for row in tables.method_variants),
         _run_facts(tables),
     )
 
 
-def _run_facts(tables: Tables) -> Mapping[str, tuple[RunFact, ...]]:
+def _run_facts(tables: SimpleNamespace) -> Mapping[str, tuple[RunFact, ...]]:
     """Return what runs are judged by, by study: its own rows, then what hardware says of it."""
     found: dict[str, tuple[RunFact, ...]] = {}
-    rows = map(run_fact, rows_of(getattr(tables, "run_facts", ())))
-    built = (f for row in rows_of(getattr(tables, "hardware", ())) for f in hardware_facts(row))
+    rows = (RunFact(**row) for row in tables.run_facts)
+    built = (f for row in tables.hardware for f in hardware_facts(row))
     for one in (*rows, *built):
         found[one.study] = (*found.get(one.study, ()), one)
     return MappingProxyType(found)
 
 
-def _names(tables: Tables) -> dict[str, dict[tuple[str, str], NameInStudy]]:
-    """Return what studies call their values, by study; nothing where the tables have no names."""
+def _names(tables: SimpleNamespace) -> dict[str, dict[tuple[str, str], NameInStudy]]:
+    """Return what studies call their values, by study."""
     found: dict[str, dict[tuple[str, str], NameInStudy]] = {}
-    for row in rows_of(getattr(tables, "extension_names", ())):
+    for row in tables.extension_names:
         name = NameInStudy(row["name"], row["nearest"].casefold() == "true")
         found.setdefault(row["study"], {})[row["attribute"], row["value"]] = name
     return found
 
 
-def _verify(tables: Tables) -> dict[str, list[Verification]]:
-    """Return the confirmations by study; nothing where the tables have none."""
+def _verify(tables: SimpleNamespace) -> dict[str, list[Verification]]:
+    """Return the confirmations by study."""
     found: dict[str, list[Verification]] = {}
-    for row in rows_of(getattr(tables, "verifications", ())):
+    for row in tables.verifications:
         one = Verification(row["name"], row["date"], row["confirms"], row["source"])
         found.setdefault(row["study"], []).append(one)
     return found
@@ -349,17 +324,17 @@ def _require_kind(key: str, attribute: str, value: str) -> None:
         raise InvalidValueError(f"{key} {attribute}", value, expected)
 
 
-def _properties(tables: Tables, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:
+def _properties(tables: SimpleNamespace, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:
     """Return the marks by property; of several methods under one value the best counts."""
     values = {value: value for value in taxonomy.values("extractor")}
-    for row in rows_of(tables.aliases):
+    for row in tables.aliases:
         if row["attribute"] == "extractor":
             values[row["alias"]] = row["value"]
     found: dict[str, dict[str, int]] = {}
-    for row in rows_of(tables.feature_assessment):
+    for row in tables.feature_assessment:
         marks = found.setdefault(row["property"], {})
         value = values[row["extractor"]]
-        marks[value] = max(int(float(row["score"])), marks.get(value, 0))
+        marks[value] = max(int(row["score"]), marks.get(value, 0))
     return MappingProxyType({name: MappingProxyType(marks) for name, marks in found.items()})
 
 

@@ -52,19 +52,11 @@ _CALIBRATION_NAMES = {"offline": "Offline calibration", "online": "Online calibr
 
 
 def taxonomy_rows(column: str, value: Any) -> Any:
-    """Return a value as a table for others writes it, so that nothing reads ``None``.
+    """Return a cell as a table for others writes it, so that nothing reads ``None``.
 
-    Parameters
-    ----------
-    column : of the table
-    value : of one cell
-
-    Returns
-    -------
-    object
-        `NONE_STATED` for the taxonomy's "None", which is a value; None in columns that say what
-        an implementation is called in the survey, where it means that the survey has no such
-        method; any other value as it is.
+    That is `NONE_STATED` for the taxonomy's "None", which is a value; None in columns that say what
+    an implementation is called in the survey, where it means that the survey has no such method;
+    any other value as it is.
     """
     if value != NO_IMPLEMENTATION_STATED:
         return value
@@ -79,14 +71,8 @@ def taxonomy_row(row: Mapping[str, Any]) -> dict[str, Any]:
 class InvalidValueError(ValueError):
     """A value that is not what its parameter takes.
 
-    Attributes
-    ----------
-    parameter, value
-        What was given.
-    expected : str
-        What would have been right, in words.
-    nearest : str or None
-        The most similar valid value; None if nothing is similar.
+    `expected` says in words what would have been right; `nearest` is the most similar valid value,
+    None if nothing is similar.
     """
 
     def __init__(
@@ -132,13 +118,7 @@ class TaxonomyEntry:
 
 
 class Taxonomy:
-    """The values of every attribute, in the survey's order.
-
-    Parameters
-    ----------
-    entries : iterable of TaxonomyEntry
-        A repeated (attribute, value) raises ValueError.
-    """
+    """The values of every attribute, in the survey's order; ValueError for one given twice."""
 
     def __init__(self, entries: Iterable[TaxonomyEntry]) -> None:
         table: dict[str, dict[str, TaxonomyEntry]] = {}

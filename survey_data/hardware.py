@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
-from survey_data.problems import SurveyDataError
-from survey_data.table_records import read_records
+from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.texts import load_texts
 
-_TABLE = "hardware"
+_FIGURES = (*("fov_full_deg", "accuracy_deg", "precision_deg", "power_mw", "mass_g", "update_hz"),)
 
 
 @dataclass(frozen=True)
@@ -35,41 +35,13 @@ class Hardware:
 
 @cache
 def hardware(directory: Path | None = None) -> Mapping[str, Hardware]:
-    """Return the built sensors by id.
-
-    Parameters
-    ----------
-    directory : Path, optional
-        Where the tables are; by default the package's own data.
-
-    Raises
-    ------
-    SurveyDataError
-        The table is missing or broken.
-    """
-    columns = list(column_types(_TABLE))
-    records = read_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns)
-    if records.problems:
-        raise SurveyDataError(tuple(records.problems))
-    found = {}
-    for _, cells in records.rows:
-        row = dict(zip(columns, cells, strict=True))
-        found[row["id"]] = Hardware(
-            id=row["id"],
-            name=row["name"],
-            detector=row["detector"],
-            mask=row["mask"],
-            fov_full_deg=_number(row["fov_full_deg"]),
-            accuracy_deg=_number(row["accuracy_deg"]),
-            accuracy_kind=row["accuracy_kind"],
-            precision_deg=_number(row["precision_deg"]),
-            power_mw=_number(row["power_mw"]),
-            mass_g=_number(row["mass_g"]),
-            basis=row["basis"],
-            source=row["source"],
-        )
-    return MappingProxyType(found)
+    """Return the built sensors by id; SurveyDataError where the table cannot be read."""
+    rows = load_texts(("hardware",), directory or DATA_DIRECTORY).hardware
+    names = Hardware.__match_args__
+    return MappingProxyType({row["id"]: Hardware(**stated(row, names)) for row in rows})
 
 
-def _number(text: str) -> float | None:
-    return float(text) if text else None
+def stated(row: Mapping[str, str], columns: Iterable[str]) -> dict[str, Any]:
+    """Return columns of a row of the table, figures as numbers or None."""
+    figures = {name: float(row[name]) if row[name] else None for name in _FIGURES}
+    return {name: figures.get(name, row[name]) for name in columns}

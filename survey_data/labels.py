@@ -47,13 +47,7 @@ class Label:
 
 @cache
 def labels() -> Mapping[str, Label]:
-    """Return the survey's labels by their id.
-
-    Raises
-    ------
-    SurveyDataError
-        The table is missing or broken.
-    """
+    """Return the survey's labels by id; SurveyDataError where the table cannot be read."""
     return {row["label"]: Label(**row) for row in load_texts(("labels",)).labels}
 
 

@@ -12,18 +12,9 @@ _LONGEST_COMPARED = 64  # similarity is quadratic in length; no known word is lo
 def nearest_name(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str | None:
     """Return the known word most like another, case aside; None where none is like it.
 
-    Of words that are equally alike, the first in alphabetical order is taken, so that the answer
-    does not depend on the order they are given in.
-
-    Parameters
-    ----------
-    word
-        What was given.
-    known
-        What could have been.
-    cutoff
-        Similarity (`difflib.SequenceMatcher.ratio`, 0 to 1) below which words are not alike; words
-        without a letter in common never are.
+    Words without a letter in common, or whose similarity (`difflib.SequenceMatcher.ratio`, 0 to 1)
+    is below the cutoff, are not alike. Of words that are equally alike, the first in alphabetical
+    order is taken, so that the answer does not depend on the order they are given in.
     """
     matcher = SequenceMatcher(autojunk=False)
     matcher.set_seq2(word.strip().casefold()[:_LONGEST_COMPARED])
@@ -42,14 +33,7 @@ def nearest_name(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str
 def one_of(value: object, words: Iterable[str], near: Iterable[tuple[str, str]] = ()) -> str:
     """Say of which words a value should have been, and which of them is most like it.
 
-    Parameters
-    ----------
-    value
-        What was given.
-    words
-        What is allowed.
-    near
-        Further spellings, each with its word.
+    `near` are further spellings, each with its word.
     """
     allowed, spelt = list(words), dict(near)
     meant = nearest_name(str(value), [*allowed, *spelt], cutoff=0.5)

@@ -9,18 +9,9 @@ from survey_data.json_data import JsonData
 
 @dataclass(frozen=True, order=True)
 class Problem(JsonData):
-    """One thing wrong with the data.
+    """One thing wrong with the data: the file, the place, what was expected and what came.
 
-    Parameters
-    ----------
-    file : str
-        Name of the file, e.g. ``attributes.csv``.
-    row : int or None
-        Row as counted in the file, the header being 1; None where no row is at fault.
-    column : str or None
-        Name of the column; None where no column is at fault.
-    message : str
-        What was expected and what came.
+    `row` is counted in the file, the header being 1; it or `column` is None where none is at fault.
     """
 
     file: str
@@ -49,16 +40,8 @@ class SurveyDataError(ValueError):
 class SurveyImportError(ValueError):
     """A table offered for import cannot be taken; nothing has been written.
 
-    Parameters
-    ----------
-    message : str
-        What was expected and what came.
-    row : int or None
-        Row in the offered table, the first line being 1.
-    column : str or None
-        Column in the offered table.
-    problems : tuple of Problem
-        Every problem found, where there are several.
+    `row` (the first line is 1) and `column` are places in the offered table; `problems` are all,
+    where there are several.
     """
 
     def __init__(

@@ -8,12 +8,9 @@ from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.nearest import nearest_name
-from survey_data.problems import SurveyDataError
-from survey_data.table_records import read_records
+from survey_data.texts import load_texts
 
-_TABLE = "processors"
 #: The machine of the published running times.
 REFERENCE = "reference"
 
@@ -48,45 +45,18 @@ class UnknownProcessorError(ValueError):
 
 @cache
 def processors() -> Mapping[str, Processor]:
-    """Return the processors by name.
-
-    Raises
-    ------
-    SurveyDataError
-        The table is missing or broken.
-    """
-    columns = list(column_types(_TABLE))
-    records = read_records(DATA_DIRECTORY / file_name(_TABLE), columns)
-    if records.problems:
-        raise SurveyDataError(tuple(records.problems))
-    rows = (dict(zip(columns, cells, strict=True)) for _, cells in records.rows)
+    """Return the processors by name; SurveyDataError where the table cannot be read."""
+    rows = load_texts(("processors",)).processors
     return MappingProxyType(
-        {
-            row["name"]: Processor(
-                row["name"],
-                row["description"],
-                float(row["coremark"]),
-                row["basis"],
-                row["source"],
-            )
-            for row in rows
-        }
+        {row["name"]: Processor(**{**row, "coremark": float(row["coremark"])}) for row in rows}
     )
 
 
 def factor(processor: str | float | None) -> float:
     """Return by what a time on the reference machine is multiplied to be of a processor.
 
-    Parameters
-    ----------
-    processor
-        A name of `processors`, or the factor itself, as a number or as text; None for the
-        reference machine.
-
-    Raises
-    ------
-    UnknownProcessorError
-        For an unknown name, and for a number that is not above 0 and finite.
+    That is a name of `processors`, or the factor itself, as a number or as text; None for the
+    reference machine. UnknownProcessorError for any other.
     """
     if is_processor(processor):
         return _factor(processor)

@@ -12,12 +12,11 @@ from pathlib import Path
 from statistics import median
 from types import MappingProxyType
 
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
-from survey_data.hardware import Hardware, hardware
+from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.hardware import Hardware, stated
 from survey_data.reported import reported_accuracies
-from survey_data.table_records import read_records
+from survey_data.texts import load_texts
 
-_TABLE = "hardware"
 SELF_POWERED = "self-powered"
 """The supply of a sensor that runs on solar cells of its own."""
 
@@ -67,20 +66,9 @@ class Product:
 @cache
 def built_sensors(directory: Path | None = None) -> Mapping[str, BuiltSensor]:
     """Return the built sensors by id; parameters and errors as of `hardware`."""
-    figures = hardware(directory)
-    columns = list(column_types(_TABLE))
-    found = {}
-    for _, cells in read_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns).rows:
-        row = dict(zip(columns, cells, strict=True))
-        found[row["id"]] = BuiltSensor(
-            **vars(figures[row["id"]]),
-            group=row["group"],
-            study=row["study"],
-            family=row["family"],
-            update_hz=float(row["update_hz"]) if row["update_hz"] else None,
-            supply=row["supply"],
-        )
-    return MappingProxyType(found)
+    rows = load_texts(("hardware",), directory or DATA_DIRECTORY).hardware
+    names = BuiltSensor.__match_args__
+    return MappingProxyType({row["id"]: BuiltSensor(**stated(row, names)) for row in rows})
 
 
 @cache

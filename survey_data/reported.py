@@ -14,11 +14,9 @@ from types import MappingProxyType
 from typing import Literal
 
 from files.reading import parse_decimal
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
-from survey_data.problems import SurveyDataError
-from survey_data.table_records import read_records
+from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.texts import load_texts
 
-_TABLE = "statistics"
 UNSPECIFIED = "unspecified"
 """The kind of a figure whose source does not say which statistic it is."""
 
@@ -72,26 +70,12 @@ class ReportedAccuracy:
 
 @cache
 def statistics(directory: Path | None = None) -> Mapping[str, Statistic]:
-    """Return the kinds of figures by name.
-
-    Parameters
-    ----------
-    directory : Path, optional
-        Where the tables are; by default the package's own data.
-
-    Raises
-    ------
-    SurveyDataError
-        The table is missing or broken.
-    """
-    columns = list(column_types(_TABLE))
-    records = read_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns)
-    if records.problems:
-        raise SurveyDataError(tuple(records.problems))
+    """Return the kinds of figures by name; SurveyDataError where the table cannot be read."""
+    rows = load_texts(("statistics",), directory or DATA_DIRECTORY).statistics
     return MappingProxyType(
         {
-            kind: Statistic(kind, name, parse_decimal(divisor), description)
-            for _, (kind, name, divisor, description) in records.rows
+            row["kind"]: Statistic(**{**row, "rms_divisor": parse_decimal(row["rms_divisor"])})
+            for row in rows
         }
     )
 

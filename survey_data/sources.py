@@ -43,13 +43,7 @@ class Source:
 
 @cache
 def hosts() -> Mapping[str, Host]:
-    """Return the hosts of ``sources.csv`` by name.
-
-    Raises
-    ------
-    SurveyDataError
-        The table is missing or broken.
-    """
+    """Return the hosts of ``sources.csv`` by name; SurveyDataError if they cannot be read."""
     return {row["host"]: Host(**row) for row in load_texts(("sources",)).sources}
 
 
@@ -74,14 +68,9 @@ def source_named(text: str) -> Source:
 
 
 def fault(text: str, known: Mapping[str, Host] | None = None) -> str:
-    """Say why a text is no source to cite; empty where it is one.
+    """Say why a cell of a column ``source`` or ``url`` is no source to cite; empty where it is one.
 
-    Parameters
-    ----------
-    text : str
-        A cell of a table's column ``source`` or ``url``.
-    known : mapping of str to Host, optional
-        Hosts by name; by default those of ``sources.csv``.
+    `known` are the hosts by name; by default those of ``sources.csv``.
     """
     if "://" not in text:
         return _hidden_address(text, hosts() if known is None else known)

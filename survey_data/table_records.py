@@ -40,19 +40,9 @@ def read_table_records(folder: Path, table: str) -> Records:
 
 
 def read_records(path: Path, columns: Sequence[str]) -> Records:
-    """Read a CSV file (plain UTF-8, comma, double quotes, one record a line).
+    """Read a CSV file (plain UTF-8, comma, double quotes, one record a line) of these columns.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    columns : sequence of str
-        The columns it must have, in this order.
-
-    Returns
-    -------
-    Records
-        Never raises for what the file holds or for a file that is not there: flaws are listed.
+    Never raises for what the file holds or for a file that is not there: flaws are listed.
     """
     try:
         lines = read_text(path).split("\n")

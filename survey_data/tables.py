@@ -90,17 +90,9 @@ class SurveyTables:
 
 
 def load(directory: str | Path | None = None) -> SurveyTables:
-    """Read the tables.
+    """Read the tables of a directory, by default the package's own data.
 
-    Parameters
-    ----------
-    directory : str or Path, optional
-        Where the CSV files are; by default the package's own data.
-
-    Returns
-    -------
-    SurveyTables
-        The frames. Form, types and keys are checked here, meaning by `validate`.
+    Form, types and keys are checked here, meaning by `validate`.
 
     Raises
     ------

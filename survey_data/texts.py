@@ -14,24 +14,11 @@ Rows = Sequence[Mapping[str, str]]
 
 
 def load_texts(tables: Sequence[str], directory: Path = DATA_DIRECTORY) -> SimpleNamespace:
-    """Read tables as `survey_data.load` does, but every cell as it stands there.
+    """Read tables by name as `survey_data.load` does, but every cell as text; an empty one is "".
 
-    That takes no pandas, which takes longer to import than all the tables to read.
-
-    Parameters
-    ----------
-    tables : names
-    directory : where the CSV files are
-
-    Returns
-    -------
-    namespace
-        A sequence of rows a table, each a mapping of its columns; an empty cell is "".
-
-    Raises
-    ------
-    SurveyDataError
-        A file is missing or broken; names file, row and column.
+    That takes no pandas, which takes longer to import than all the tables to read. Gives a sequence
+    of rows a table, each a mapping of its columns. SurveyDataError names file, row and column where
+    a file is missing or broken.
     """
     found: dict[str, Rows] = {}
     problems: list[Problem] = []

@@ -87,13 +87,9 @@ def fidelity(
 ) -> Fidelity:
     """Grade what runs of a study.
 
-    Parameters
-    ----------
-    study : Study
-    facts : Facts
-    pipelines : what runs of it, with the basis of each part and the settings
-    ran : the same as they were fitted, with the stated values that each method runs
-    wanted : what the study is run for, with the rule that says so
+    `pipelines` have the basis of each part and the settings; `ran` are the same as they were
+    fitted, with the stated values that each method runs; `wanted` is what the study is run for,
+    with the rule that says so.
     """
     if not pipelines:
         return Fidelity("none", _NOTHING, purposes=wanted)
@@ -116,13 +112,9 @@ def graded(
     leading: Sequence[RunnablePipeline],
     ran: Sequence[FittedPipeline],
 ) -> Fidelity:
-    """Return the grade that departures make, and the sentence that says them.
+    """Return the grade that all departures make, and the sentence that says them.
 
-    Parameters
-    ----------
-    study, facts, wanted, pipelines, ran : as of `fidelity`
-    departures : all of them
-    leading : the pipelines that the study is judged by
+    The study is judged by the `leading` pipelines; the rest as of `fidelity`.
     """
     differ = sum(not one.unknown for one in departures)
     grade: Grade = "close" if differ == 1 else "stand-in"

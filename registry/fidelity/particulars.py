@@ -77,11 +77,6 @@ class RunFact:
     note: str
 
 
-def run_fact(row: Mapping[str, str]) -> RunFact:
-    """Return a row of `run_facts.csv`."""
-    return RunFact(**{name: row[name] for name in RunFact.__match_args__})
-
-
 #: Columns of `hardware.csv` by what a run is judged by.
 _OF_HARDWARE = {
     "count_of_apertures": "openings",
@@ -121,13 +116,3 @@ def purpose_rule(row: Mapping[str, str]) -> PurposeRule:
         row["survey_section"],
         row["rule"],
     )
-
-
-def compensated_model(row: Mapping[str, str]) -> CompensatedModel:
-    """Return a row of `compensated_models.csv`."""
-    return CompensatedModel(**{name: row[name] for name in CompensatedModel.__match_args__})
-
-
-def method_variant(row: Mapping[str, str]) -> MethodVariant:
-    """Return a row of `method_variants.csv`."""
-    return MethodVariant(**{name: row[name] for name in MethodVariant.__match_args__})

@@ -81,18 +81,11 @@ def settings(
 ) -> tuple[DatasetCondition, ...]:
     """Return where a pipeline stands for a study: data sets under conditions, the first one first.
 
-    Those that show most of its purposes; among these data sets made after the study, then flights
-    for a study with a purpose and benches for others, then what shows its first purpose, then by
-    how far its sensor is from the study's, then by name. Where none shows any, the first condition
-    of each.
-
-    Parameters
-    ----------
-    study : Study
-    wanted : what it is run for
-    names : data sets that the pipeline is planned on
-    data_sets : what each of them shows; one that is missing has a nominal condition alone
-    distance : how far a data set's sensor is from the study's
+    Those that show most of its purposes (`wanted`); among these data sets made after the study,
+    then flights for a study with a purpose and benches for others, then what shows its first
+    purpose, then by how far (`distance`) its sensor is from the study's, then by name. Where none
+    shows any, the first condition of each. A data set that is missing in `data_sets` has a nominal
+    condition alone.
     """
     known = [data_sets.get(name, DataSet(name)) for name in names]
     shown: dict[tuple[str, str], list[Purpose]] = {}

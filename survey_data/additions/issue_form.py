@@ -19,7 +19,7 @@ from pydantic import BaseModel, ValidationError
 
 from files.atomic import replace_file
 from files.reading import FileRefusedError, read_json
-from survey_data.additions.faults import Fault, FaultsError
+from survey_data.additions.offered import Fault, FaultsError
 from survey_data.additions.template import empty_template
 from survey_data.problems import SurveyImportError
 
@@ -64,13 +64,7 @@ def form() -> str:
 
 
 def template_of(event: Any) -> str:
-    """Return the template that an issue fills in, of the JSON of its event.
-
-    Raises
-    ------
-    FaultsError
-        It is no event of an issue that was filed with the form.
-    """
+    """Return the template that an issue fills in, of its event's JSON; FaultsError without one."""
     try:
         body = _Event.model_validate(event).issue.body
     except ValidationError:

@@ -6,7 +6,7 @@ import json
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
@@ -21,11 +21,12 @@ from pydantic import (
     field_validator,
 )
 
-from survey_data.additions.faults import Fault, FaultsError
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import TURNING
 from survey_data.importing.writing import offered_text
+from survey_data.json_data import JsonData
 from survey_data.nearest import one_of
+from survey_data.problems import SurveyImportError
 from survey_data.table_records import Records, read_table_records
 from survey_data.validation.extension import SHARED
 from survey_data.validation.validate import check_records
@@ -46,6 +47,31 @@ _TABLE = re.compile(r"\s*\[(\[)?\s*\"?([\w-]+)\"?\s*\]")
 _KEY = re.compile(r"\s*([\w-]+)\s*=")
 _LONG_STRING = re.compile(r'""".*?"""|\'\'\'.*?\'\'\'', re.DOTALL)
 _SYNTAX = re.compile(r"^(.*) \(at (?:line (\d+), column \d+|(end of document))\)$", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Fault(JsonData):
+    """One fault; ``line`` is None where no line is at fault."""
+
+    line: int | None
+    message: str
+
+
+class FaultsError(SurveyImportError):
+    """A file cannot be taken, for these faults; nothing has been written."""
+
+    def __init__(self, file: str, faults: Sequence[Fault]) -> None:
+        self.file = file
+        self.faults = tuple(sorted(faults, key=lambda fault: fault.line or 0))
+        super().__init__("\n".join(self.lines))
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each fault: file, line, what was expected."""
+        return [
+            f"{self.file}{'' if each.line is None else f', line {each.line}'}: {each.message}"
+            for each in self.faults
+        ]
 
 
 @dataclass(frozen=True)
@@ -203,13 +229,9 @@ class Addition:
 def read_addition(
     document: TomlDocument, directory: Path = DATA_DIRECTORY, publication: Row | None = None
 ) -> Addition:
-    """Read a template.
+    """Read a template, by the rules of our tables, whose keys are taken.
 
-    Parameters
-    ----------
-    document : the TOML
-    directory : our tables, whose rules it has to keep and whose keys are taken
-    publication : what a bibliography says of the study; the template's own words go before
+    What a bibliography says of the publication is overruled by the template's own words.
 
     Raises
     ------

@@ -53,12 +53,9 @@ _SENSORS = """\
 
 
 def empty_template(directory: Path = DATA_DIRECTORY, publication: Row | None = None) -> str:
-    """Return an empty template, with the allowed words in comments.
+    """Return an empty template, with the words that our tables allow in comments.
 
-    Parameters
-    ----------
-    directory : our tables, whose words are allowed
-    publication : what is known of the publication already, by column of the table of studies
+    `publication` is what is known of it already, by column of the table of studies.
     """
     tables = load_texts(("attribute_definitions", "bases", "taxonomy", "statistics"), directory)
     enums = {

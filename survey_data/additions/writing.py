@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from files.csv_writing import csv_text
-from survey_data.additions.faults import Fault, FaultsError
-from survey_data.additions.offered import Addition, Row, TomlDocument, read_addition, read_toml
-from survey_data.additions.publications import choose, read_publications
+from survey_data.additions.offered import (
+    Addition,
+    Fault,
+    FaultsError,
+    Row,
+    TomlDocument,
+    read_addition,
+    read_toml,
+)
 from survey_data.descriptor import DATA_DIRECTORY, column_types
 from survey_data.editions import FOLDER
+from survey_data.importing.bibliography import SUFFIXES, Entry, read_bibliography
 from survey_data.importing.writing import locked_tables, require_valid, rows_of, write_valid
 from survey_data.nearest import one_of
 from survey_data.problems import SurveyImportError
@@ -20,6 +29,7 @@ TABLES = ("studies", "attributes", "roles", "architectures", "names")
 """Tables of the extension that a study has rows of, without their prefix."""
 
 _VERIFICATIONS = "verifications"
+_KEY = re.compile(r"[A-Za-z]+([0-9]{4})[a-z]?")
 
 
 class UnknownStudyError(SurveyImportError):
@@ -33,24 +43,12 @@ def read_study(
     attributes: Path | None = None,
     key: str | None = None,
 ) -> Addition:
-    """Read a study from a template, or from a bibliography with the template of its attributes.
+    """Read a study from a TOML template, or from a bibliography with that of its attributes.
 
-    Parameters
-    ----------
-    path : Path
-        A TOML template; or BibTeX, RIS or CSL JSON, by the end of its name.
-    directory : Path
-        Our tables, whose keys and DOIs are taken.
-    attributes : Path, optional
-        Template of the attributes beside a bibliography; by default the file of the same name that
-        ends in .toml, if there is one. What it says of the publication goes before.
-    key : str, optional
-        Which publication of a bibliography; the only one by default.
-
-    Raises
-    ------
-    FaultsError
-        Names every fault with file and line; SurveyImportError for what is no bibliography.
+    `attributes` is that template; by default the file of the same name that ends in .toml, if there
+    is one. What it says of the publication goes before. `key` chooses a publication of the
+    bibliography. FaultsError names every fault with file and line; SurveyImportError says what is
+    no bibliography.
     """
     if path.suffix.casefold() == ".toml":
         if attributes is not None:
@@ -72,26 +70,11 @@ def read_study(
 def add_study(
     addition: Addition, directory: Path = DATA_DIRECTORY, *, apply: bool = False
 ) -> dict[str, str]:
-    """Add a study to the extension, whole or not at all.
+    """Add a study to the extension of `directory`, whole or not at all.
 
-    Parameters
-    ----------
-    addition : Addition
-        As `read_study` gives it.
-    directory : Path
-        Our tables.
-    apply : bool
-        Write. Without it nothing is written, and the tables are only checked.
-
-    Returns
-    -------
-    dict of str to str
-        The tables that change, by name, with their new text.
-
-    Raises
-    ------
-    SurveyImportError
-        The key is taken, the tables would not be valid, or they cannot be written.
+    Returns the tables that change, by name, with their new text; without `apply` nothing is
+    written, and the tables are only checked. SurveyImportError where the key is taken, or the
+    tables would not be valid or cannot be written.
     """
 
     def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
@@ -129,12 +112,7 @@ def verify_study(
 ) -> dict[str, str]:
     """Note that somebody confirmed what is said of a study, of either edition.
 
-    Parameters
-    ----------
-    row : mapping of str to str
-        Columns of the table of verifications.
-    directory, apply
-        As for `add_study`, whose result and errors it has.
+    `row` has the columns of the table of verifications; the rest as `add_study`.
     """
     tables = load_texts(("studies", "extension_studies"), directory)
     keys = [found["key"] for found in (*tables.studies, *tables.extension_studies)]
@@ -189,3 +167,39 @@ def _table(name: str) -> str:
 def _sorted(rows: Sequence[list[str]]) -> list[list[str]]:
     """Order rows by study; those of a study stay as they came."""
     return sorted(rows, key=lambda row: row[0])
+
+
+def read_publications(path: Path) -> tuple[dict[str, str], ...]:
+    """Read the publications of a file, each as columns of the table of studies.
+
+    A key that is no key of ours, or of another year, is made of the first author's surname and the
+    year. SurveyImportError where the file cannot be read, or holds no publication.
+    """
+    if path.suffix.casefold() not in SUFFIXES:
+        expected = ".toml, " + ", ".join(SUFFIXES)
+        raise FaultsError(path.name, [Fault(None, f"expected a file that ends in {expected}")])
+    return tuple(_publication(entry) for entry in read_bibliography(path))
+
+
+def choose(publications: Sequence[dict[str, str]], key: str | None, file: str) -> dict[str, str]:
+    """Return the publication of a key, or the only one; FaultsError where that is not clear."""
+    keys = [each["key"] for each in publications]
+    if key in keys:
+        return publications[keys.index(key)]
+    if len(publications) == 1:
+        return {**publications[0], "key": key or keys[0]}
+    message = f"holds {len(keys)} publications: choose one with --key ({', '.join(keys[:12])})"
+    if key:
+        message = f"key {key!r}: {one_of(key, keys)}"
+    raise FaultsError(file, [Fault(None, message)])
+
+
+def _publication(entry: Entry) -> dict[str, str]:
+    key = entry.key
+    known = _KEY.fullmatch(key)
+    if known is None or (entry.year and known[1] != entry.year):
+        first = entry.authors.split(";")[0].split()
+        letters = unicodedata.normalize("NFKD", first[-1]) if first else ""
+        surname = re.sub(r"[^A-Za-z]", "", letters)
+        key = f"{surname}{entry.year}" if surname and entry.year else key if known else ""
+    return {**entry.columns(), "key": key}

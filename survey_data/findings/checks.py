@@ -122,22 +122,7 @@ def study_values(
 def evaluate(
     row: Mapping[str, Any], values: Mapping[str, Entry], vocabulary: Vocabulary
 ) -> ClauseVerdict:
-    """Judge a clause by the studies' values.
-
-    Parameters
-    ----------
-    row : mapping
-        A row of the table of clauses.
-    values : mapping
-        As `study_values` returns it.
-    vocabulary : Vocabulary
-        What the row may name.
-
-    Raises
-    ------
-    FindingSyntaxError
-        As `parse_clause`.
-    """
+    """Judge a row of the table of clauses by the studies' values; raises as `parse_clause`."""
     clause = parse_clause(row, vocabulary)
     matching = [entry for entry in values.values() if passes(entry, clause.given)]
     counted = [entry[clause.ranked] for entry in matching if clause.ranked in entry]

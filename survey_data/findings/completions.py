@@ -24,14 +24,8 @@ Values = frozenset[str]
 class Possibility:
     """How a study with an unknown cell could count in a clause, or not at all.
 
-    Attributes
-    ----------
-    choices : tuple of frozenset of str
-        Values that it would be counted for; each of them, where its own are known, is the one.
-    several : bool
-        Whether it may be counted for several choices at once.
-    required : tuple of tuple of int
-        Places of choices; it passes the filter with one of each of these only.
+    ``choices`` are values that it would be counted for, ``several`` whether for several of them at
+    once; it passes the filter with one of each of the ``required`` places of choices only.
     """
 
     choices: tuple[Values, ...]
@@ -42,15 +36,9 @@ class Possibility:
 def fewest_to_hold(tally: Tally, possibilities: Iterable[Possibility]) -> int | None:
     """Return how few studies' unknown cells could make a clause hold; None if none could.
 
-    An integer linear programme: how many of the studies that are alike take each choice, the
-    fewest of them, so that the counts rank as the clause says.
-
-    Parameters
-    ----------
-    tally : Tally
-        Counts by the known cells.
-    possibilities : iterable of Possibility
-        One a study that has a cell unknown which the clause asks for.
+    An integer linear programme: how many of the studies that are alike take each choice, the fewest
+    of them, so that the counts rank as the clause says. `possibilities` has one for each study that
+    has a cell unknown which the clause asks for.
     """
     groups = Counter(possibilities)
     firsts = [[value] for value in tally.named]

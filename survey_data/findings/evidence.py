@@ -68,13 +68,10 @@ class Tally:
 
 
 def settled_by(tally: Tally, turning: int | None = None) -> str:
-    """Say on which counts the verdict rests, and which evidence would turn or decide it.
+    """Say which counts a verdict rests on, and which evidence would turn or decide it.
 
-    Parameters
-    ----------
-    tally : Tally
-    turning : int, optional
-        Of how few studies the unknown cells could make a clause hold that does not by the known.
+    `turning`: of how few studies the unknown cells could make a clause hold that does not by the
+    known.
     """
     unknown = tally.matching - tally.counted
     if turning is not None:

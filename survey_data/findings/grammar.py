@@ -75,14 +75,7 @@ class Clause:
 
 
 class Vocabulary:
-    """What a finding may name: the taxonomy's values and categories, and years.
-
-    Parameters
-    ----------
-    taxonomy : DataFrame
-    single : collection of str
-        Attributes of which a study has one value at most.
-    """
+    """What a finding may name; of a `single` attribute a study has one value at most."""
 
     def __init__(self, taxonomy: pd.DataFrame, single: Collection[str] = ()) -> None:
         self.single = frozenset(single)
@@ -117,10 +110,7 @@ class Vocabulary:
 def parse_clause(row: Mapping[str, Any], vocabulary: Vocabulary) -> Clause:
     """Parse a row of the table of clauses.
 
-    Raises
-    ------
-    FindingSyntaxError
-        The row does not keep the grammar or names an unknown attribute, value or kind.
+    FindingSyntaxError where it breaks the grammar or names an unknown attribute, value or kind.
     """
     kind = str(row["kind"])
     if kind not in KINDS:

@@ -98,26 +98,10 @@ class FidelityReport:
 
 
 def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> FidelityReport:
-    """Compare the tables with what the survey says of itself.
+    """Compare valid tables with what the survey says of itself, every number counted from them.
 
-    Parameters
-    ----------
-    tables : SurveyTables
-        Valid tables (`validate` finds no problem).
-    problems : sequence of Problem, optional
-        Problems to carry in the report.
-
-    Returns
-    -------
-    FidelityReport
-        Every number is counted from the tables at hand.
-
-    Raises
-    ------
-    FindingSyntaxError
-        A clause of a finding does not keep the grammar.
-    KeyError, LookupError
-        The tables are not valid: a key or value they refer to is not there.
+    `problems` are carried in the report. FindingSyntaxError, KeyError or LookupError where the
+    tables are not valid.
     """
     counts = _counts(tables)
     by_id = {line.id: line for line in counts}

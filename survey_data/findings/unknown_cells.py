@@ -21,16 +21,7 @@ from survey_data.findings.grammar import (
 def possibilities(
     clause: Clause, entries: Iterable[Entry], vocabulary: Vocabulary
 ) -> Iterator[Possibility]:
-    """Yield what each study could add to a clause's counts by cells that are not known.
-
-    Parameters
-    ----------
-    clause : Clause
-    entries : iterable of mapping
-        Known values of each study, by attribute.
-    vocabulary : Vocabulary
-        The values that an unknown cell could take.
-    """
+    """Yield what each study could add to a clause's counts by cells that are not known."""
     for entry in entries:
         unsettled = [one for one in clause.given if one[0] not in entry]
         settled = [one for one in clause.given if one[0] in entry]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 
 from survey_data.importing.values import normalise, similarity
 from survey_data.tables import SurveyTables
@@ -46,8 +47,8 @@ class StudyFinder:
             return found
         reasons = [f"no study has the key {study!r}"] if study else []
         for said, look in (
-            (title, lambda: self._find_title(title)),
-            (authors and year, lambda: self._find_author(authors, year)),
+            (title, partial(self._find_title, title)),
+            (authors and year, partial(self._find_author, authors, year)),
         ):
             try:
                 if said:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 import pandas as pd
 
@@ -28,6 +28,36 @@ def _texts(column: pd.Series) -> list[str]:
     # Python walks lists several times as fast as columns.
     cells = zip(column.tolist(), column.isna().tolist(), strict=True)
     return ["" if missing else str(cell) for cell, missing in cells]
+
+
+def foreign(
+    frames: Frames, table: str, column: str, known: Collection[str], message: str
+) -> Iterator[Problem]:
+    """Yield a problem for each cell of a column that is stated and none of the known ones."""
+    for index, (cell,) in texts(frames[table], column):
+        if cell and cell not in known:
+            yield problem(table, index, column, message.format(cell))
+
+
+def of_study(
+    frames: Frames, table: str, attribute: str, columns: Iterable[str]
+) -> Iterator[Problem]:
+    """Yield a problem for each cell that is no known value of its study's attribute.
+
+    `attribute` is one of a study, or empty where a column of the table names it.
+    """
+    known = known_values(frames)
+    for column in columns:
+        names = ("study", column) if attribute else ("study", column, "attribute")
+        for index, (study, value, *named) in texts(frames[table], *names):
+            of = attribute or named[0]
+            if value not in known.get((study, of), ()):
+                yield problem(table, index, column, f"{study} has no {of} {value!r}")
+
+
+def cells_of(frames: Frames, table: str, name: str) -> set[str]:
+    """Return the different cells of a column."""
+    return {cell for _, (cell,) in texts(frames[table], name)}
 
 
 def known_values(frames: Frames) -> dict[tuple[str, str], set[str]]:

@@ -9,7 +9,7 @@ from datetime import date
 from survey_data.descriptor import file_name
 from survey_data.editions import BY_STUDY
 from survey_data.problems import Problem
-from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
+from survey_data.validation.cells import Frames, Rule, cells_of, foreign, of_study, problem, texts
 
 #: Tables that a rule of studies may look at beside those of the edition.
 SHARED = frozenset(
@@ -24,11 +24,7 @@ def check_extension(
 ) -> list[Problem]:
     """Return the problems of studies the survey does not map.
 
-    Parameters
-    ----------
-    frames : every table that could be read
-    rules : those of the survey's studies; of them the ones that ask for nothing but studies and
-        vocabulary hold for these too
+    Those of its rules that ask for nothing but studies and vocabulary hold for these too.
     """
     later = {name: frames[name] for name in SHARED if name in frames}
     for name in BY_STUDY:
@@ -79,24 +75,15 @@ def _rests_on_its_own(frames: Frames) -> Iterator[Problem]:
 
 def _names_are_of_values(frames: Frames) -> Iterator[Problem]:
     """Check that a name is of one of the study's values."""
-    known = known_values({"attributes": frames["extension_attributes"]})
-    columns = ("study", "attribute", "value")
-    for index, (study, attribute, value) in texts(frames["extension_names"], *columns):
-        if value not in known.get((study, attribute), ()):
-            message = f"{study} has no {attribute} {value!r}"
-            yield problem("extension_names", index, "value", message)
+    own = {**frames, "attributes": frames["extension_attributes"]}
+    yield from of_study(own, "extension_names", "", ("value",))
 
 
 def _verified_studies_exist(frames: Frames) -> Iterator[Problem]:
     """Check that a confirmation is of a study of either edition, on a day that there is."""
-    known = {
-        key
-        for table in ("studies", "extension_studies")
-        for _, (key,) in texts(frames[table], "key")
-    }
-    for index, (study, day) in texts(frames["verifications"], "study", "date"):
-        if study not in known:
-            yield problem("verifications", index, "study", f"no study {study!r}")
+    known = cells_of(frames, "studies", "key") | cells_of(frames, "extension_studies", "key")
+    yield from foreign(frames, "verifications", "study", known, "no study {!r}")
+    for index, (day,) in texts(frames["verifications"], "date"):
         try:
             date.fromisoformat(day)
         except ValueError:

@@ -6,8 +6,17 @@ from collections.abc import Iterator
 
 from survey_data.findings.grammar import Vocabulary
 from survey_data.problems import Problem
-from survey_data.tables import RESTING
-from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
+from survey_data.tables import FIRST_ROW, RESTING
+from survey_data.validation.cells import (
+    Frames,
+    Rule,
+    cells_of,
+    foreign,
+    known_values,
+    of_study,
+    problem,
+    texts,
+)
 
 #: By basis, the column that must say where a value comes from, or why it stands there.
 TOLD = {
@@ -33,12 +42,11 @@ def _evidence_is_told(frames: Frames) -> Iterator[Problem]:
 
 def _roles_are_of_methods(frames: Frames) -> Iterator[Problem]:
     """Check that a role is of one of the study's values, and that it proposed or kept one."""
+    yield from of_study(frames, "roles", "", ("value",))
     known = known_values(frames)
     compared: dict[tuple[str, str], set[str]] = {}
     columns = ("study", "attribute", "value", "role")
     for index, (study, attribute, value, role) in texts(frames["roles"], *columns):
-        if value not in known.get((study, attribute), ()):
-            yield problem("roles", index, "value", f"{study} has no {attribute} {value!r}")
         if role == "compared":
             compared.setdefault((study, attribute), set()).add(value)
         if compared.get((study, attribute), set()) >= known.get((study, attribute), {""}):
@@ -49,44 +57,36 @@ def _roles_are_of_methods(frames: Frames) -> Iterator[Problem]:
 def _sensors_use_every_value(frames: Frames) -> Iterator[Problem]:
     """Check that sensors listed for a study are of its detectors and masks, each of them used."""
     known = known_values(frames)
-    used: dict[tuple[str, str], set[str]] = {}
-    last: dict[str, int] = {}
-    for index, (study, *pair) in texts(frames["architectures"], "study", "detector", "mask"):
-        last[study] = index
-        for attribute, value in zip(("detector", "mask"), pair, strict=True):
-            used.setdefault((study, attribute), set()).add(value)
-            if value not in known.get((study, attribute), ()):
-                message = f"{study} has no {attribute} {value!r}"
-                yield problem("architectures", index, attribute, message)
-    for (study, attribute), values in used.items():
-        for value in sorted(known.get((study, attribute), set()) - values):
-            message = f"{study} has the {attribute} {value!r} on none of its sensors"
-            yield problem("architectures", last[study], attribute, message)
+    for attribute in ("detector", "mask"):
+        yield from of_study(frames, "architectures", attribute, (attribute,))
+        used: dict[str, set[str]] = {}
+        last: dict[str, int] = {}
+        for index, (study, value) in texts(frames["architectures"], "study", attribute):
+            last[study] = index
+            used.setdefault(study, set()).add(value)
+        for study, values in used.items():
+            for value in sorted(known.get((study, attribute), set()) - values):
+                message = f"{study} has the {attribute} {value!r} on none of its sensors"
+                yield problem("architectures", last[study], attribute, message)
 
 
 def _models_are_of_the_study(frames: Frames) -> Iterator[Problem]:
     """Check that compensations and variants are of models that the study has."""
-    known = known_values(frames)
-    models = Vocabulary(frames["taxonomy"]).values.get("model", set())
-    columns = {"compensated_models": ("compensation", "model"), "method_variants": ("model",)}
-    for table, names in columns.items():
-        for index, (study, *values) in texts(frames[table], "study", *names):
-            own = known.get((study, "model"), set())
-            for name, value in zip(names, values, strict=True):
-                ahead = table == "compensated_models" and name == "model"
-                if value not in (models if ahead else own):
-                    yield problem(table, index, name, f"{study} has no model {value!r}")
-    for index, (study, model, relation) in texts(
-        frames["compensated_models"], "study", "model", "relation"
-    ):
-        if relation == "within" and model not in known.get((study, "model"), set()):
+    vocabulary = Vocabulary(frames["taxonomy"]).values
+    models, extractors = (vocabulary.get(name, set()) for name in ("model", "extractor"))
+    yield from of_study(frames, "compensated_models", "model", ("compensation",))
+    own = known_values(frames)
+    columns = ("study", "model", "relation")
+    for index, (study, model, relation) in texts(frames["compensated_models"], *columns):
+        if relation == "within" and model not in own.get((study, "model"), set()):
             yield problem("compensated_models", index, "model", f"{study} has no model {model!r}")
-    for index, (runs_as, extractor) in texts(frames["method_variants"], "runs_as", "extractor"):
-        if runs_as not in models:
-            yield problem("method_variants", index, "runs_as", f"unknown model {runs_as!r}")
-        if extractor not in Vocabulary(frames["taxonomy"]).values.get("extractor", set()):
-            message = f"unknown extractor {extractor!r}"
-            yield problem("method_variants", index, "extractor", message)
+    yield from of_study(frames, "method_variants", "model", ("model",))
+    for table, name, known, what in (
+        ("compensated_models", "model", models, "model"),
+        ("method_variants", "runs_as", models, "model"),
+        ("method_variants", "extractor", extractors, "extractor"),
+    ):
+        yield from foreign(frames, table, name, known, f"unknown {what} {{!r}}")
 
 
 def _conditions_parse(frames: Frames) -> Iterator[Problem]:
@@ -121,13 +121,10 @@ def _advice_speaks_the_vocabulary(frames: Frames) -> Iterator[Problem]:
 def _families_cover_the_models(frames: Frames) -> Iterator[Problem]:
     """Check that every model of the taxonomy has its place in the middle ring, and none else."""
     models = Vocabulary(frames["taxonomy"]).values.get("model", set()) - {"None"}
-    frame = frames["model_families"]
-    held = [model for _, (model,) in texts(frame, "model")]
-    for index, model in enumerate(held):
-        if model not in models:
-            yield problem("model_families", index, "model", f"unknown model {model!r}")
-    for model in sorted(models - set(held)):
-        yield problem("model_families", len(frame) - 1, "model", f"no row for the model {model!r}")
+    yield from foreign(frames, "model_families", "model", models, "unknown model {!r}")
+    last = len(frames["model_families"]) - 1
+    for model in sorted(models - cells_of(frames, "model_families", "model")):
+        yield problem("model_families", last, "model", f"no row for the model {model!r}")
 
 
 def _every_run_can_be_judged(frames: Frames) -> Iterator[Problem]:
@@ -150,10 +147,29 @@ def _every_run_can_be_judged(frames: Frames) -> Iterator[Problem]:
 
 def _venues_are_of_known_ones(frames: Frames) -> Iterator[Problem]:
     """Check that a venue is given for studies alone that have one."""
-    known = {key for _, (key, venue) in texts(frames["studies"], "key", "venue") if venue}
-    for index, (study,) in texts(frames["venues"], "study"):
-        if study not in known:
-            yield problem("venues", index, "study", f"no venue of {study} in studies.csv")
+    studies = {"studies": frames["studies"].dropna(subset=["venue"])}
+    known = cells_of(studies, "studies", "key")
+    yield from foreign(frames, "venues", "study", known, "no venue of {} in studies.csv")
+
+
+def _families_are_of_one_kind(frames: Frames) -> Iterator[Problem]:
+    """Check that the rows of a family that give detector, mask or supply agree on it."""
+    columns = ("detector", "mask", "supply")
+    first: dict[tuple[str, str], tuple[int, str]] = {}
+    for index, (family, *cells) in texts(frames["hardware"], "family", *columns):
+        for column, cell in zip(columns, cells, strict=True):
+            at, held = first.setdefault((family, column), (index, cell)) if cell else (index, cell)
+            if cell != held:
+                message = f"{family} has {cell} here and {held} in row {at + FIRST_ROW}"
+                yield problem("hardware", index, column, message)
+
+
+def _no_power_has_a_supply(frames: Frames) -> Iterator[Problem]:
+    """Check that a supply is given where power is 0, and nowhere beside another power."""
+    for index, (power, supply) in texts(frames["hardware"], "power_mw", "supply"):
+        if power and (float(power) == 0.0) != bool(supply):
+            message = f"power is {float(power):g} mW, yet the supply is {supply!r}"
+            yield problem("hardware", index, "supply", message)
 
 
 RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
@@ -169,4 +185,6 @@ RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("taxonomy", "model_families"), _families_cover_the_models),
     (("studies", "venues"), _venues_are_of_known_ones),
     (("studies", "run_facts"), _every_run_can_be_judged),
+    (("hardware",), _families_are_of_one_kind),
+    (("hardware",), _no_power_has_a_supply),
 )

@@ -20,14 +20,22 @@ from survey_data.nearest import one_of
 from survey_data.problems import Problem
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
-from survey_data.validation import built_sensors, citations, provenance
-from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
+from survey_data.validation import citations, provenance
+from survey_data.validation.cells import (
+    Frames,
+    Rule,
+    cells_of,
+    foreign,
+    known_values,
+    problem,
+    texts,
+)
 from survey_data.validation.extension import check_extension
 
 
 def check_rules(frames: Frames) -> list[Problem]:
     """Return the problems every rule finds whose tables are all in `frames`."""
-    rules = (*_RULES, *provenance.RULES, *citations.RULES, *built_sensors.RULES)
+    rules = (*_RULES, *provenance.RULES, *citations.RULES)
     ours = [
         found
         for needed, rule in rules
@@ -180,20 +188,14 @@ def _printed_labels_are_known(frames: Frames) -> Iterator[Problem]:
     """Check that the labels of the printed tables and of the assessment are of the taxonomy."""
     vocabulary = Vocabulary(frames["taxonomy"]).values
     known = {(attribute, value) for attribute, values in vocabulary.items() for value in values}
-    known |= {cell for _, cell in _pairs(frames["aliases"], "attribute", "alias")}
-    for index, cell in _pairs(frames["study_tables"], "attribute", "value"):
-        if cell not in known:
-            message = f"unknown taxonomy value {cell[1]!r} of {cell[0]}"
+    known |= {(of, alias) for _, (of, alias) in texts(frames["aliases"], "attribute", "alias")}
+    for index, (of, value) in texts(frames["study_tables"], "attribute", "value"):
+        if (of, value) not in known:
+            message = f"unknown taxonomy value {value!r} of {of}"
             yield problem("study_tables", index, "value", message)
-    for index, (extractor,) in texts(frames["feature_assessment"], "extractor"):
-        if ("extractor", extractor) not in known:
-            message = f"unknown taxonomy value {extractor!r} of extractor"
-            yield problem("feature_assessment", index, "extractor", message)
-
-
-def _pairs(frame: pd.DataFrame, a: str, b: str) -> Iterator[tuple[int, tuple[str, str]]]:
-    for index, cells in texts(frame, a, b):
-        yield index, (cells[0], cells[1])
+    extractors = {value for of, value in known if of == "extractor"}
+    message = "unknown taxonomy value {!r} of extractor"
+    yield from foreign(frames, "feature_assessment", "extractor", extractors, message)
 
 
 def _absences_are_none(frames: Frames) -> Iterator[Problem]:
@@ -237,24 +239,20 @@ def _years_match_keys(frames: Frames) -> Iterator[Problem]:
 
 def _cited_keys_exist(frames: Frames) -> Iterator[Problem]:
     """Check keys of claims and case studies against the studies and the other cited keys."""
-    known = {key for _, (key,) in texts(frames["studies"], "key")}
-    cited = {key for _, (key,) in texts(frames["references"], "key")}
+    known = cells_of(frames, "studies", "key")
+    cited = cells_of(frames, "references", "key")
     for index, (key,) in texts(frames["references"], "key"):
         if key in known:
             yield problem("references", index, "key", f"{key} is a mapped study")
-    for table, column in (("claims", "study"), ("feature_assessment", "case_study")):
-        for index, (key,) in texts(frames[table], column):
-            if key and key not in known | cited:
-                yield problem(table, index, column, f"no study and no reference {key!r}")
+    for table, name in (("claims", "study"), ("feature_assessment", "case_study")):
+        yield from foreign(frames, table, name, known | cited, "no study and no reference {!r}")
 
 
 def _claim_sections_exist(frames: Frames) -> Iterator[Problem]:
     """Check that a claim's section is one the taxonomy files a value under."""
-    sections = {section for _, (section,) in texts(frames["taxonomy"], "survey_section")}
-    for index, (section,) in texts(frames["claims"], "section"):
-        if section not in sections:
-            message = f"no taxonomy value has the section {section!r}"
-            yield problem("claims", index, "section", message)
+    known = cells_of(frames, "taxonomy", "survey_section")
+    message = "no taxonomy value has the section {!r}"
+    yield from foreign(frames, "claims", "section", known, message)
 
 
 def _assessment_is_full(frames: Frames) -> Iterator[Problem]:

@@ -13,7 +13,7 @@ from api.docs.knowledge import knowledge
 from api.service import studies as service
 from benchmark.plan.shown import data_sets, design
 from registry.fidelity import evidence
-from registry.fidelity.particulars import RunFact, hardware_facts
+from registry.fidelity.particulars import RunFact
 from registry.fidelity.purposes import DataSet, DatasetCondition
 from registry.fidelity.runnable import RunnablePipeline
 from registry.studies import AttributeValue, Facts, Study
@@ -89,27 +89,6 @@ def test_a_score_is_within_a_factor_of_three(
     assert list(evidence.score(study, excused, [pipeline()], scores)) == []
     (none,) = evidence.score(study, excused, [pipeline()], {})
     assert (none.part, none.unknown) == ("score", False)
-
-
-def test_figures_of_built_sensors_count_where_they_were_seen() -> None:
-    row = {
-        "id": "P99",
-        "study": "S0",
-        "basis": "page",
-        "source": "x",
-        "count_of_apertures": "0",
-        "aperture_or_slit_um": "",
-        "focal_or_height_mm": "0.75",
-        "pixel_pitch_um": "",
-        "array_px": "2048x1",
-        "fov_full_deg": "",
-        "detector": "CCD",
-        "mask": "",
-    }
-    found = {one.fact: one.value for one in hardware_facts(row)}
-    assert found == {"height_mm": "0.75", "array_px": "2048", "detector": "CCD"}
-    assert list(hardware_facts({**row, "basis": "recalled"})) == []
-    assert list(hardware_facts({**row, "study": ""})) == []
 
 
 def test_a_drawing_says_how_faces_are_arranged() -> None:

@@ -151,32 +151,6 @@ def test_fractional_weights_split_a_study_evenly_over_its_combinations(
 
 
 @settings(deadline=None, derandomize=True, max_examples=100)
-@given(table=rows, levels=chains, where=filters)
-def test_no_link_joins_values_that_no_study_has_together(
-    facts_of: Callable[[Rows], Facts],
-    table: Rows,
-    levels: list[str],
-    where: Mapping[str, list[str]],
-) -> None:
-    facts = facts_of(table)
-    for link in flows(levels, where, facts=facts).links:
-        (a, va), (b, vb) = (end.split(":", 1) for end in (link.source, link.target))
-        for key in link.studies:
-            study = facts.studies[key]
-            has = {
-                level: {
-                    v: facts.taxonomy.derived_values(level, v)
-                    for v in study.of(attribute_of(level))
-                }
-                for level in (a, b)
-            }
-            assert va in has[a].values()
-            assert vb in has[b].values()
-            if attribute_of(a) == attribute_of(b):  # implied by one value, not by two
-                assert any(has[a][v] == va and has[b][v] == vb for v in has[a])
-
-
-@settings(deadline=None, derandomize=True, max_examples=100)
 @given(table=rows, where=filters)
 def test_a_filter_keeps_the_studies_that_have_one_of_the_values_everywhere(
     facts_of: Callable[[Rows], Facts], table: Rows, where: Mapping[str, list[str]]

@@ -61,6 +61,14 @@ def test_a_value_that_is_none_of_its_attribute_names_the_study(
         study_from({"studies": [STUDY], "attributes": [cell(attribute, value)]})
 
 
+def test_tables_that_contradict_each_other_are_refused(texts: Any) -> None:
+    with pytest.raises(ValueError, match="study 'Doe2030' stands twice"):
+        facts_with(texts, studies=[STUDY, STUDY])
+    stranger = cell("mask", "Slit") | {"study": "Nobody1999"}
+    with pytest.raises(ValueError, match=r"attributes of studies not in the table.* Nobody1999"):
+        facts_with(texts, attributes=[stranger])
+
+
 def test_a_study_that_is_in_no_table_yet_has_what_its_rows_say() -> None:
     found = study_from({"studies": [STUDY], "attributes": [cell("mask", "Slit")]})
     assert (found.key, found.edition, found.of("mask")) == ("Doe2030", "extension", ("Slit",))

@@ -101,12 +101,6 @@ def test_the_nearest_stands_in_where_nothing_of_a_study_runs(facts_of: Build) ->
     ]
 
 
-def test_the_real_method_is_taken_as_soon_as_there_is_one(facts_of: Build) -> None:
-    network = implementation("network", "ANN", None, frozenset({SPOT}))
-    found = resolved(facts_of, study_of(model=["ANN"]), models=[*MODELS, network])
-    assert (models_of(found), found.state) == (["network"], "complete")
-
-
 def test_the_extractor_gives_way_before_the_model_does(facts_of: Build) -> None:
     # Balances are read by no fusion model, signals are: the model stays.
     row = study_of(detector=["PD"], extractor=["Voltage balance"], model=["Basic"])
@@ -193,13 +187,6 @@ def test_a_compensation_alone_runs_ahead_of_the_simplest_model(facts_of: Build) 
     assert (pipeline.model, found.state) == ("glass + spm", "complete")
     ((stage, why),) = pipeline.assumed.items()
     assert (stage, why.split()[0]) == ("model", "OCM")
-
-
-def test_a_chain_of_two_compensations_without_a_model_runs_once(facts_of: Build) -> None:
-    both = chain(GLASS, SHADE, SPM)
-    found = resolved(facts_of, study_of(model=["OCM", "ICM/Shadow"]), models=[*MODELS, both])
-    assert models_of(found) == [both.about.name]
-    assert found.pipelines[0].assumed
 
 
 def test_where_a_compensation_is_not_planned_its_model_runs_bare(facts_of: Build) -> None:

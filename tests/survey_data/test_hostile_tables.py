@@ -1,6 +1,5 @@
 """Tables made to hurt or to mislead: refused with the place named, soon, in little memory."""
 
-import os
 import zipfile
 from pathlib import Path
 
@@ -101,15 +100,6 @@ def test_rows_in_hidden_sheets_alone_are_refused(tmp_path):
         book.create_sheet("seen")
 
     assert "hidden sheets alone (Sheet)" in refusal(workbook(tmp_path / "t.xlsx", hide))
-
-
-def test_a_named_pipe_a_directory_and_a_loop_are_refused_at_once(tmp_path):
-    os.mkfifo(tmp_path / "pipe.csv")
-    (tmp_path / "folder.csv").mkdir()
-    (tmp_path / "loop.csv").symlink_to(tmp_path / "loop.csv")
-    assert "named pipe" in refusal(tmp_path / "pipe.csv")
-    assert "directory" in refusal(tmp_path / "folder.csv")
-    assert "broken link" in refusal(tmp_path / "loop.csv")
 
 
 @pytest.fixture(scope="module")

@@ -124,13 +124,6 @@ def test_applying_completes_identities_once(copy: Any) -> None:
     assert copy.path("studies").read_bytes() == after
 
 
-def test_the_first_of_two_entries_of_a_key_is_taken(copy: Any) -> None:
-    twice = "@article{Fan2017, title={One}}\n@article{Fan2017, title={Two}}\n"
-    plan = import_bibliography(offer(copy, twice), copy.directory)
-    assert [d.theirs for d in plan.differences if d.column == "title"] == ["One"]
-    assert plan.left_aside[0].key == "Fan2017"
-
-
 @pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "% nothing"])
 def test_what_is_no_bibliography_is_refused(copy: Any, text: str) -> None:
     with pytest.raises(SurveyImportError, match=r"refs\.bib holds no entry"):
@@ -140,19 +133,6 @@ def test_what_is_no_bibliography_is_refused(copy: Any, text: str) -> None:
     (copy.directory / "bad.bib").write_bytes(b"\xff\xfe")
     with pytest.raises(SurveyImportError, match="not UTF-8"):
         import_bibliography(copy.directory / "bad.bib")
-
-
-@pytest.mark.parametrize("cut", range(40, len(BIB), 61))
-def test_a_file_cut_off_anywhere_is_read_or_refused(copy: Any, cut: int) -> None:
-    path = offer(copy, BIB[:cut])
-    whole = BIB[:cut].count("}\n")
-    try:
-        entries = read_bibliography(path)
-    except SurveyImportError:
-        assert BIB[cut - 2 : cut] != "}\n"
-    else:
-        assert whole
-        assert entries[0].title == "Sun Sensor Error & Compensation - CCD"
 
 
 def test_a_doi_that_is_another_study_s_is_refused_whole(copy: Any) -> None:
@@ -295,14 +275,6 @@ def test_volume_number_and_pages_follow_the_venue(copy: Any) -> None:
         @misc{C2000, title={C}, volume=3}"""
     venues = [entry.venue for entry in read_bibliography(offer(copy, text))]
     assert venues == ["J, vol. 14, no. 2, pp. 120-135", "J, vol. 3, no. 1, e7", ""]
-
-
-def test_a_venue_with_volume_and_pages_is_the_same_as_without(copy: Any) -> None:
-    row = cells(copy, "Chang2008")
-    venue, title = row["venue"].partition(", vol. ")[0], row["title"]
-    text = f"@article{{Chang2008, title={{{title}}}, journal={{{venue}}}, volume=99, pages={{1}}}}"
-    plan = import_bibliography(offer(copy, text), copy.directory)
-    assert "venue" not in {d.column for d in plan.differences}
 
 
 def test_an_entry_of_another_year_than_its_key_is_taken_and_the_year_shown(copy: Any) -> None:

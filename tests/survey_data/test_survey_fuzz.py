@@ -62,31 +62,6 @@ def test_random_cells_give_problems_or_stay_valid(copy: Any, data: st.DataObject
         copy.path(table).write_bytes(before)
 
 
-@given(st.binary(max_size=300))
-@settings(max_examples=150, **SETTINGS)
-def test_any_bytes_are_read_or_reported(copy: Any, content: bytes) -> None:
-    from survey_data.table_records import read_records
-
-    path = copy.path("claims")
-    path.write_bytes(content)
-    records = read_records(path, list(column_types("claims")))
-    assert records.problems  # no random bytes make the header
-    assert {p.file for p in records.problems} == {"claims.csv"}
-
-
-@pytest.mark.slow
-@given(content=st.one_of(st.binary(max_size=400), st.text(max_size=300).map(str.encode)))
-@pytest.mark.parametrize("name", ["theirs.csv", "theirs.xlsx"])
-@settings(max_examples=40, **SETTINGS)
-def test_any_offered_file_is_taken_or_refused(copy: Any, name: str, content: bytes) -> None:
-    path = copy.directory / name
-    path.write_bytes(content)
-    before = copy.path("attributes").read_bytes()
-    with pytest.raises(survey_data.SurveyImportError):
-        survey_data.import_table(path, copy.directory, apply=True)
-    assert copy.path("attributes").read_bytes() == before
-
-
 @pytest.fixture(scope="module")
 def workbook(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     import openpyxl

@@ -116,14 +116,6 @@ def test_a_count_that_does_not_hold_is_reported_at_the_end_of_the_table(copy: An
     assert located(copy.found("counts.csv"), 3, "column")
 
 
-def test_values_are_checked_against_their_own_attribute(copy: Any) -> None:
-    # QPD is a detector and a model, but no mask
-    rows = copy.rows("attributes")
-    row = next(i for i, cells in enumerate(rows, 1) if cells[1] == "mask" and cells[2])
-    copy.set("attributes", row, "value", "QPD")
-    assert located(copy.found("attributes.csv"), row, "value")
-
-
 def test_a_number_is_a_number_in_range(copy: Any) -> None:
     texts = ["0", "200", "-1", "nan", "inf", "0,5", "1e99", "0.5 deg", "\u0663"]
     rows = copy.rows("attributes")
@@ -206,11 +198,6 @@ def test_a_finding_is_tested_by_clauses_that_run_on(copy: Any) -> None:
     assert located(copy.found("findings.csv"), 51, "id")
 
 
-def test_the_assessment_keeps_one_case_study_an_extractor(copy: Any) -> None:
-    copy.set("feature_assessment", 3, "case_study", "Chang2008")
-    assert located(copy.found("feature_assessment.csv"), 3, "case_study")
-
-
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
@@ -233,8 +220,7 @@ def test_a_weakened_descriptor_is_reported(tmp_path: Path) -> None:
     text = (DATA_DIRECTORY / path.name).read_text(encoding="utf-8")
     path.write_text(text.replace('"required": true', '"required": 1', 1), encoding="utf-8")
     found = [p.message for p in survey_data.validate(tmp_path) if p.file == path.name]
-    assert len(found) == 1
-    assert "/resources/0/schema/fields/0/constraints/required" in found[0]
+    assert found == ["differs from the descriptor in use"]
     path.unlink()
     assert survey_data.Problem(path.name, None, None, "the file is missing") in (
         survey_data.validate(tmp_path)

@@ -61,19 +61,3 @@ def test_a_cell_that_is_not_of_its_column_s_type_is_refused(
     assert refused.value.problems == (
         survey_data.Problem(file_name(table), 2, column, f"expected {kind}, got {text!r}"),
     )
-
-
-def test_a_table_that_there_is_not_is_named_with_those_that_there_are() -> None:
-    with pytest.raises(KeyError, match="no table 'sundials'; there are studies, attributes"):
-        file_name("sundials")
-
-
-def test_the_edition_of_the_survey_has_its_own_studies_alone(
-    tables: survey_data.SurveyTables,
-) -> None:
-    survey, every = tables.edition("survey"), tables.edition("all")
-    assert set(survey.studies["edition"]) == {"survey"}
-    assert survey.studies["key"].tolist() == tables.studies["key"].tolist()
-    assert survey.attributes is tables.attributes
-    later = every.studies["key"].tolist()[len(tables.studies) :]
-    assert later == tables.extension_studies["key"].tolist()

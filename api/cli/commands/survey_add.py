@@ -13,11 +13,16 @@ from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError, only_beside
 from files.atomic import replace_file
-from survey_data.additions.faults import FaultsError
-from survey_data.additions.offered import Addition
-from survey_data.additions.publications import choose, read_publications
+from survey_data.additions.offered import Addition, FaultsError
 from survey_data.additions.template import empty_template, taken_by
-from survey_data.additions.writing import add_study, read_study, remove_study, verify_study
+from survey_data.additions.writing import (
+    add_study,
+    choose,
+    read_publications,
+    read_study,
+    remove_study,
+    verify_study,
+)
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.bibliography import SUFFIXES
 

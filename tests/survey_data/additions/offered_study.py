@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from survey_data.additions.faults import FaultsError
-from survey_data.additions.offered import parse_toml, read_addition
+from survey_data.additions.offered import FaultsError, parse_toml, read_addition
 
 STUDY = """\
 key = "Doe2031a"

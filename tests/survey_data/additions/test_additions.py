@@ -11,8 +11,7 @@ import pytest
 import survey_data
 from files import manifest
 from survey_data import facts_manifest
-from survey_data.additions.faults import FaultsError
-from survey_data.additions.offered import parse_toml, read_addition
+from survey_data.additions.offered import FaultsError, parse_toml, read_addition
 from survey_data.additions.template import empty_template
 from survey_data.additions.writing import (
     UnknownStudyError,

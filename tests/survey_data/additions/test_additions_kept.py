@@ -19,7 +19,7 @@ from survey_data.additions.writing import (
     remove_study,
     verify_study,
 )
-from survey_data.editions import EXTENSION_TABLES, editions
+from survey_data.editions import editions
 from survey_data.importing.writing import locked_tables
 from survey_data.problems import SurveyImportError
 from tests.survey_data.additions.offered_study import CONFIRMED, content, offered
@@ -124,20 +124,6 @@ def test_rules_hold_for_later_studies_and_name_their_file(
     found = [p for p in survey_data.validate(copy.directory) if p.row == 2]
     for table, _, _, said in faults:
         assert [p for p in found if p.file == f"extension/{table}.csv" and said in p.message], found
-
-
-def test_missing_or_damaged_tables_of_later_studies_are_named(copy: Any) -> None:
-    paths = {
-        copy.path(table).relative_to(copy.directory): copy.path(table) for table in EXTENSION_TABLES
-    }
-    for path in paths.values():
-        path.write_bytes(path.read_bytes().replace(b",", b"_", 1))
-    names = {name.as_posix() for name in paths}
-    assert {p.file for p in survey_data.validate(copy.directory)} == names
-    for path in paths.values():
-        path.unlink()
-    expected = {survey_data.Problem(name, None, None, "the file is missing") for name in names}
-    assert expected <= set(survey_data.validate(copy.directory))
 
 
 def test_tables_of_later_studies_have_the_columns_of_the_surveys() -> None:

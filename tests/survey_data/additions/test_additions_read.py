@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 import survey_data
-from survey_data.additions.faults import FaultsError
-from survey_data.additions.offered import Addition, Row, parse_toml, read_addition
+from survey_data.additions.offered import Addition, FaultsError, Row, parse_toml, read_addition
 from survey_data.additions.writing import TABLES, read_study
 from survey_data.problems import SurveyImportError
 from survey_data.texts import load_texts

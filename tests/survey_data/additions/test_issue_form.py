@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 import yaml
 
-from survey_data.additions.faults import FaultsError
 from survey_data.additions.issue_form import form, main, template_of
-from survey_data.additions.offered import parse_toml, read_addition
+from survey_data.additions.offered import FaultsError, parse_toml, read_addition
 from tests.survey_data.additions.offered_study import STUDY
 
 ROOT = Path(__file__).parents[3]
@@ -88,8 +86,7 @@ def test_an_event_without_a_study_is_refused_in_words(tmp_path: Path, text: str)
 def test_the_job_reads_an_event_and_writes_the_template(tmp_path: Path) -> None:
     path, made = tmp_path / "event.json", tmp_path / "study.toml"
     path.write_text(json.dumps(event(STUDY)), "utf-8")
-    command = [sys.executable, "-m", "survey_data.additions.issue_form", str(path), str(made)]
-    subprocess.run(command, cwd=ROOT, check=True)
+    assert main([str(path), str(made)]) == 0
     assert tomllib.loads(made.read_text("utf-8"))["key"] == "Doe2030"
 
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-import survey_data
 from survey_data import SurveyImportError, import_table, load, validate
 from survey_data.importing.writing import locked_tables
 
@@ -90,12 +89,6 @@ def test_a_replaced_accuracy_does_not_keep_the_kind_of_the_old_one(
     (found,) = cell(copy, "Wei2011", "accuracy_kind")
     assert found[2:4] == [kind, "authors-table"]
     assert validate(copy.directory) == []
-
-
-def test_a_class_that_an_imported_number_contradicts_stands_and_is_counted(copy: Any) -> None:
-    import_table(offer(copy, "Key;Accuracy (deg)\nWei2011;0.7\n"), copy.directory, apply=True)
-    (found,) = survey_data.fidelity(load(copy.directory)).class_disagreements
-    assert (found.study, found.filed, found.by_limits) == ("Wei2011", "FSS", "CSS")
 
 
 def test_the_survey_s_printed_cells_are_never_overwritten(copy: Any) -> None:
@@ -187,12 +180,6 @@ def test_an_unreadable_cell_stops_everything(
         import_table(path, copy.directory, overrides=overrides, apply=True)
     assert (caught.value.row, caught.value.column) == (row, column)
     assert copy.path("attributes").read_bytes() == before
-
-
-def test_rows_on_one_study_are_united(copy: Any) -> None:
-    text = "Key,Task\nAlvi2014,Cost\nAlvi2014,Volume\n"
-    import_table(offer(copy, text), copy.directory, apply=True)
-    assert [row[2] for row in cell(copy, "Alvi2014", "task")] == ["Cost", "Volume"]
 
 
 def test_a_table_about_other_studies_is_refused(copy: Any) -> None:

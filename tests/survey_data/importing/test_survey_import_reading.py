@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 
 import openpyxl
@@ -109,21 +108,6 @@ def test_a_file_that_is_not_there_or_a_directory_is_refused(tmp_path: Path) -> N
         read_table(tmp_path / "nothing.csv")
     with pytest.raises(SurveyImportError, match="cannot read"):
         read_table(tmp_path)
-
-
-def test_an_archive_that_is_no_workbook_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "theirs.xlsx"
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("hello.txt", "hello")
-    with pytest.raises(SurveyImportError, match="not a readable XLSX"):
-        read_table(path)
-
-
-def test_an_empty_workbook_and_a_header_alone_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(SurveyImportError, match="empty"):
-        read_table(workbook(tmp_path / "empty.xlsx", []))
-    with pytest.raises(SurveyImportError, match="no rows"):
-        read_table(workbook(tmp_path / "header.xlsx", [["Key", "Mask"]]))
 
 
 def test_a_sheet_of_a_csv_file_is_refused(tmp_path: Path) -> None:

@@ -12,13 +12,10 @@ import pandas as pd
 import pytest
 
 import survey_data
-from files.locks import lock_path
 from files.manifest import FILE
 from survey_data import SurveyImportError, import_table, read_table
-from survey_data.importing.bibliography import read_bibliography
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError
-from survey_data.importing.values import UnreadableValueError, ValueReader
-from survey_data.importing.writing import locked_tables
+from survey_data.importing.values import ValueReader
 
 
 @pytest.fixture
@@ -56,41 +53,6 @@ def test_empty_columns_behind_the_last_named_one_are_left_out(tmp_path: Path) ->
     assert frame.to_dict("list") == {"Key": ["Alvi2014"], "Mask": ["Slit"]}
 
 
-def entries(folder: Path, text: str) -> dict[str, tuple[str, str]]:
-    """Return title and venue of each entry of a bibliography by key."""
-    path = folder / "refs.bib"
-    path.write_text(text, encoding="utf-8")
-    return {each.key: (each.title, each.venue) for each in read_bibliography(path)}
-
-
-def test_a_bibliography_that_is_no_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(
-        SurveyImportError, match=r"cannot read .*: expected a file, got a directory"
-    ):
-        read_bibliography(tmp_path)
-
-
-def test_an_entry_takes_its_venue_from_the_title_of_the_one_that_it_refers_to(
-    tmp_path: Path,
-) -> None:
-    text = '@inproceedings{a, title = "A", crossref = {p}}\n@proceedings{p, year = 2008%s}\n'
-    assert entries(tmp_path, text % ', title = "Proc. X"')["a"] == ("A", "Proc. X")
-    assert entries(tmp_path, text % "")["a"] == ("A", "")
-
-
-def test_items_of_a_bbl_without_a_label_are_read_and_those_without_a_key_left_out(
-    tmp_path: Path,
-) -> None:
-    item = "{a}\n\\bibinfo{title}{A}, \\bibinfo{journal}{J}.\n"
-    assert entries(tmp_path, "\\bibitem" + item) == {"a": ("A", "J")}
-    assert entries(tmp_path, "\\bibitem[{X(2008)}]" + item + "\\bibitem no key") == {
-        "a": ("A", "J")
-    }
-    for text in ("\\bibitem no key", "\\bibitem[{X(2008) never closed" + item):
-        with pytest.raises(SurveyImportError, match=r"refs\.bib holds no entry"):
-            entries(tmp_path, text)
-
-
 @pytest.mark.parametrize(
     ("attribute", "text", "expected"),
     [
@@ -106,13 +68,6 @@ def test_a_list_is_cut_outside_parentheses_and_what_is_not_stated_left_out(
     attribute: str, text: str, expected: list[str], tables: survey_data.SurveyTables
 ) -> None:
     assert [match.value for match in ValueReader(tables).read(attribute, text)] == expected
-
-
-def test_a_parenthesis_of_a_list_belongs_to_the_value_before_it(
-    tables: survey_data.SurveyTables,
-) -> None:
-    with pytest.raises(UnreadableValueError, match=r"'Sundial \(brass, large\)' is no value"):
-        ValueReader(tables).read("mask", "Slit, Sundial (brass, large)")
 
 
 @pytest.fixture(scope="module")
@@ -134,24 +89,6 @@ def finder(tables: survey_data.SurveyTables) -> StudyFinder:
 def test_a_title_of_two_studies_is_not_guessed(title: str, finder: StudyFinder) -> None:
     with pytest.raises(StudyNotFoundError, match="may mean Mobasser2001 or Other2001"):
         finder.find(title=title)
-
-
-def test_a_study_is_found_by_a_misprinted_title_and_by_a_key_without_a_year(
-    finder: StudyFinder,
-) -> None:
-    assert finder.find(title="A sundial of polish brass") == "Timeless"
-    assert finder.find(study="timeless") == "Timeless"
-    with pytest.raises(StudyNotFoundError, match="no study by 'Timeless' of 2001"):
-        finder.find(authors="Timeless", year="2001")
-
-
-def test_a_folder_where_no_lock_can_be_made_is_refused(tmp_path: Path) -> None:
-    lock_path(tmp_path / "tables").mkdir()
-    with (
-        pytest.raises(SurveyImportError, match=r"cannot write in .*: Is a directory"),
-        locked_tables(tmp_path),
-    ):
-        pytest.fail("the folder was taken for locked")
 
 
 def test_an_import_beside_a_damaged_manifest_writes_nothing(copy: Any) -> None:
