@@ -45,27 +45,18 @@ _VENUES = (
     *("howpublished", "publisher"),
 )
 _TEXTS = (*_VENUES, "title", "year", "date", "volume", "number", "issue", "pages")
-_BIBTEX_KINDS = {
-    "article": "journal",
-    **dict.fromkeys(("inproceedings", "conference", "incollection"), "conference"),
-    **dict.fromkeys(("phdthesis", "mastersthesis", "thesis"), "thesis"),
-    **dict.fromkeys(("techreport", "report"), "report"),
+#: What BibTeX, RIS and CSL JSON call each type of our table of studies.
+_KINDS = {
+    "journal": ("article", "JOUR", "JFULL", "EJOUR", "MGZN", "article-journal"),
+    "conference": (
+        *("inproceedings", "conference", "incollection"),
+        *("CONF", "CPAPER", "paper-conference"),
+    ),
+    "thesis": ("phdthesis", "mastersthesis", "thesis", "THES"),
+    "report": ("techreport", "report", "RPRT"),
+    "preprint": ("preprint", "UNPB", "INPR"),
 }
-_RIS_KINDS = {
-    **dict.fromkeys(("JOUR", "JFULL", "EJOUR", "MGZN"), "journal"),
-    **dict.fromkeys(("CONF", "CPAPER"), "conference"),
-    **dict.fromkeys(("UNPB", "INPR"), "preprint"),
-    "THES": "thesis",
-    "RPRT": "report",
-}
-_CSL_KINDS = {
-    "article-journal": "journal",
-    "paper-conference": "conference",
-    "thesis": "thesis",
-    "report": "report",
-    "article": "preprint",
-    "preprint": "preprint",
-}
+_KIND_OF = {name: kind for kind, names in _KINDS.items() for name in names}
 _CSL_MEMBERS = {
     **{name: name for name in ("title", "volume")},
     "venue": "container-title",
@@ -227,7 +218,7 @@ def _of_tex(key: str, kind: str, said: Mapping[str, str], line: int) -> Entry:
     arxiv = f"10.48550/arXiv.{preprint[0]}" if preprint else ""
     return _entry(
         key,
-        kind if kind == "preprint" else _BIBTEX_KINDS.get(kind, "unknown"),
+        kind,
         [_plain(_natural(name)) for name in authors],
         {
             **fields,
@@ -262,7 +253,7 @@ def _entry(
         authors="; ".join(name for name in (" ".join(each.split()) for each in authors) if name),
         year=year[0] if year else "",
         venue=", ".join(filter(None, venue)) if texts["venue"] else "",
-        kind=kind,
+        kind=_KIND_OF.get(kind, "unknown"),
         doi=doi[0].rstrip(".,;") if doi else texts.get("arxiv", ""),
         line=line,
         url=texts["url"] if re.fullmatch(r"https?://\S+", texts["url"]) else "",
@@ -309,7 +300,7 @@ def _of_ris(record: Mapping[str, Any]) -> Entry:
     pages = [first("start_page"), first("end_page")]
     return _entry(
         first("id"),
-        _RIS_KINDS.get(first("type_of_reference"), "unknown"),
+        first("type_of_reference"),
         map(_natural, names),
         {
             "title": first("title", "primary_title"),
@@ -339,7 +330,8 @@ def _csl(text: str, name: str) -> Iterator[Entry]:
         said = {name: _scalar(item.get(member)) for name, member in _CSL_MEMBERS.items()}
         said["venue"] = said["venue"] or _scalar(item.get("publisher"))
         said["year"] = _csl_year(item.get("issued"))
-        kind = _CSL_KINDS.get(_scalar(item.get("type")), "unknown")
+        kind = _scalar(item.get("type"))
+        kind = "preprint" if kind == "article" else kind  # which BibTeX calls one of a journal
         yield _entry(_scalar(item.get("id")), kind, _csl_names(item.get("author")), said)
 
 

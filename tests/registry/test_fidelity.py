@@ -25,7 +25,6 @@ from stand_ins import (
 
 from api.service.measurements import Measurements
 from benchmark.plan.combinations import scorable_plan, study_plans
-from benchmark.plan.parts import every_part
 from benchmark.plan.shown import data_sets
 from registry.fidelity.grading import Grade
 from registry.fidelity.particulars import (
@@ -220,18 +219,6 @@ def test_grades_of_the_survey_follow_from_their_departures(
             for value in study.of("model"):
                 carried = survey.within(key, value) or survey.variant(key, value)
                 assert carried or value in ran, (key, value)
-
-
-def test_settings_of_the_survey_are_conditions_that_data_sets_have(
-    everything: dict[str, Resolution],
-) -> None:
-    presets = every_part().presets
-    for found in everything.values():
-        for pipeline in found.pipelines:
-            assert pipeline.settings
-            for at in pipeline.settings:
-                assert at.dataset in pipeline.datasets
-                assert at.condition in presets[at.dataset].conditions
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,8 @@ from types import MappingProxyType
 import pytest
 from stand_ins import EXTRACTORS, MODELS, planned, stand_ins, study_of
 
-from benchmark.plan.combinations import cells, scorable_plan
-from benchmark.plan.parts import installed_parts
+from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.shown import data_sets
-from registry.catalogue import catalogue
 from registry.fidelity.particulars import RunFact
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution, resolve, resolve_all
@@ -152,21 +150,6 @@ def everything() -> dict[str, Resolution]:
     return resolve_all(scorable_plan(), data_sets=data_sets())
 
 
-def test_the_plan_by_architecture_is_the_plan() -> None:
-    presets = installed_parts().presets
-    announced = {
-        (dataset, *pair, *architecture)
-        for architecture, pairs in scorable_plan().items()
-        for pair, datasets in pairs.items()
-        for dataset in datasets
-    }
-    planned_cells = {
-        (c.dataset, c.extractor, c.model, presets[c.dataset].detector, presets[c.dataset].mask)
-        for c in cells()
-    }
-    assert announced == planned_cells
-
-
 def test_all_129_studies_resolve_each_with_a_cell(
     survey: Facts, everything: dict[str, Resolution]
 ) -> None:
@@ -187,15 +170,6 @@ def test_all_129_studies_resolve_each_with_a_cell(
                 rests_on_it = p.basis[attribute] not in ("implied", "defaulted")
                 assert (getattr(p, attribute) in stated) == rests_on_it
     assert everything["Chang2008"] == resolve("Chang2008", plan, data_sets=data_sets())
-
-
-def test_what_nothing_implements_is_told(survey: Facts, everything: dict[str, Resolution]) -> None:
-    lacking = set(catalogue().gaps())
-    for key, resolution in everything.items():
-        gaps = {(gap.attribute, gap.value) for gap in resolution.gaps}
-        for attribute in ("extractor", "model"):
-            for value in survey.studies[key].of(attribute):
-                assert (attribute, value) not in lacking or (attribute, value) in gaps
 
 
 @pytest.mark.parametrize(

@@ -144,7 +144,7 @@ def _overrides(mapped: Sequence[str]) -> dict[str, str]:
 def _print(plan: ImportPlan) -> None:
     listed = plan.model_dump(mode="json")
     mapping = listed["mapping"]
-    columns = ("column", "target", "score", "name_score", "value_score", "how")
+    columns = ("column", "target", "score", "how")
     emit(mapping["matches"], columns, Format.TABLE, title=f"Columns of {plan.source}")
     if mapping["ignored"]:
         say(f"left aside: {', '.join(mapping['ignored'])}")
