@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
@@ -18,6 +18,7 @@ from algorithms.display_names import display_name
 from registry import studies as registered
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy, unknown_name
 from survey_data import labels
+from survey_data.json_data import JsonData
 
 if TYPE_CHECKING:
     from algorithms.chain import Chain, Scored
@@ -27,7 +28,7 @@ Role = Literal["extractor", "model"]
 
 
 @dataclass(frozen=True)
-class Implementation:
+class Implementation(JsonData):
     """What the catalogue says of one implementation."""
 
     name: str
@@ -48,24 +49,10 @@ class Implementation:
         """Display name."""
         return display_name(self.name)
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, Any]:
         """As in the HTTP answer."""
-        return {
-            "name": self.name,
-            "title": self.title,
-            "role": self.role,
-            "taxonomy": self.taxonomy,
-            "category": self.category,
-            "observation": self.observation,
-            "kind": self.kind,
-            "accepts": None if self.accepts is None else list(self.accepts),
-            "labels": list(self.labels),
-            "label_names": [labels.name(label) for label in self.labels],
-            "studies": list(self.studies),
-            "origin": self.origin,
-            "version": self.version,
-            "summary": self.summary,
-        }
+        named = [labels.name(label) for label in self.labels]
+        return {**super().to_dict(), "title": self.title, "label_names": named}
 
 
 class Catalogue:
@@ -183,14 +170,5 @@ def _summary(cls: type | Chain) -> str:
     if isinstance(cls, Chain):
         stages = " ".join(_summary(stage) for stage in cls.compensations)
         return f"{stages} Then {cls.model.about.name}."
-    text = inspect.cleandoc(cls.__doc__ or "")
-    return " ".join(_first_paragraph(text.splitlines()))
-
-
-def _first_paragraph(lines: Iterable[str]) -> list[str]:
-    paragraph: list[str] = []
-    for line in lines:
-        if not line.strip():
-            break
-        paragraph.append(line.strip())
-    return paragraph
+    paragraph, _, _ = inspect.cleandoc(cls.__doc__ or "").partition("\n\n")
+    return " ".join(paragraph.split())

@@ -157,6 +157,8 @@ class Study:
 
     def to_dict(self) -> dict[str, object]:
         """Return the summary and every cell with its provenance, empty cells included."""
+        stated = [(a, cell) for a, cells in self.values.items() for cell in cells]
+        empty = [(a, AttributeValue("", "unknown", "", note)) for a, note in self.unknown.items()]
         cells = [
             {
                 "attribute": attribute,
@@ -165,26 +167,15 @@ class Study:
                 "source": cell.source,
                 "source_name": source_named(cell.source).name,
                 "note": cell.note,
-                "role": self.role(attribute, cell.value) if attribute in METHODS else "",
+                "role": self._role_of_method(attribute, cell.value),
                 **self._name(attribute, cell.value),
             }
-            for attribute, cells in self.values.items()
-            for cell in cells
-        ]
-        cells += [
-            {
-                "attribute": a,
-                "value": "",
-                "basis": "unknown",
-                "source": "",
-                "source_name": "",
-                "note": note,
-                "role": "",
-                **self._name(a, ""),
-            }
-            for a, note in self.unknown.items()
+            for attribute, cell in (*stated, *empty)
         ]
         return {**self.summary(), "note": self.note, "attributes": cells}
+
+    def _role_of_method(self, attribute: str, value: str) -> str:
+        return self.role(attribute, value) if value and attribute in METHODS else ""
 
     def _name(self, attribute: str, value: str) -> dict[str, object]:
         """Return what the study calls a value, and whether the taxonomy has only the nearest."""

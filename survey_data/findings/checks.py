@@ -10,7 +10,7 @@ from typing import Any, Literal
 import pandas as pd
 
 from survey_data import labels
-from survey_data.findings.completions import fewest_to_hold
+from survey_data.findings.completions import fewest_to_hold, possibilities
 from survey_data.findings.evidence import NO_MAJORITY, OCCURRING, Tally, settled_by
 from survey_data.findings.grammar import (
     CATEGORY_OF,
@@ -22,7 +22,6 @@ from survey_data.findings.grammar import (
     parse_clause,
     passes,
 )
-from survey_data.findings.unknown_cells import possibilities
 from survey_data.json_data import JsonData
 
 Verdict = Literal["reproduced", "partly", "tied", "contradicted", "undecidable"]
@@ -53,7 +52,7 @@ class ClauseVerdict(JsonData):
 
 
 @dataclass(frozen=True)
-class FindingVerdict:
+class FindingVerdict(JsonData):
     """A finding's verdict, made of its clauses'; `not_tested` is what none of them tests."""
 
     id: str
@@ -64,16 +63,8 @@ class FindingVerdict:
     clauses: tuple[ClauseVerdict, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the verdict as plain JSON data."""
-        return {
-            "id": self.id,
-            "verdict": self.verdict,
-            "survey_section": self.survey_section,
-            "section_name": labels.name(self.survey_section),
-            "statement": self.statement,
-            "not_tested": self.not_tested,
-            "clauses": [clause.to_dict() for clause in self.clauses],
-        }
+        """Return the verdict as plain JSON data, with the name of its section."""
+        return {**super().to_dict(), "section_name": labels.name(self.survey_section)}
 
 
 def finding_verdict(clauses: Iterable[Verdict]) -> Verdict:

@@ -7,7 +7,7 @@ counts behind it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 import pandas as pd
@@ -22,6 +22,7 @@ from survey_data.findings.checks import (
     study_values,
 )
 from survey_data.findings.grammar import Vocabulary
+from survey_data.json_data import JsonData
 from survey_data.problems import Problem
 from survey_data.tables import SurveyTables
 from survey_data.validation.rules import count_rows
@@ -44,14 +45,13 @@ class Completeness:
     `by_basis` counts studies by the strongest basis of their values, strongest basis first.
     """
 
-    attribute: str
     known: int
     unknown: int
     by_basis: dict[str, int] = field(hash=False)
 
 
 @dataclass(frozen=True)
-class FidelityReport:
+class FidelityReport(JsonData):
     """Counts, completeness and findings of a set of tables; `to_dict` gives JSON data."""
 
     studies: int
@@ -60,7 +60,7 @@ class FidelityReport:
     counts: tuple[CountLine, ...]
     early_keys: tuple[str, ...]
     case_references: tuple[str, ...]
-    completeness: tuple[Completeness, ...]
+    completeness: dict[str, Completeness] = field(hash=False)
     class_disagreements: tuple[ClassDisagreement, ...]
     findings: tuple[FindingVerdict, ...]
     problems: tuple[Problem, ...]
@@ -74,26 +74,11 @@ class FidelityReport:
         return counted
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the report as plain JSON data."""
+        """Return the report as plain JSON data, with the number of findings of each verdict."""
         return {
-            "studies": self.studies,
-            "stated": self.stated,
-            "explanation": self.explanation,
-            "counts": [asdict(line) for line in self.counts],
-            "early_keys": list(self.early_keys),
-            "case_references": list(self.case_references),
-            "completeness": {
-                entry.attribute: {
-                    "known": entry.known,
-                    "unknown": entry.unknown,
-                    "by_basis": dict(entry.by_basis),
-                }
-                for entry in self.completeness
-            },
-            "class_disagreements": [asdict(entry) for entry in self.class_disagreements],
+            **super().to_dict(),
             "verdicts": self.verdicts,
             "findings": [finding.to_dict() for finding in self.findings],
-            "problems": [problem.to_dict() for problem in self.problems],
         }
 
 
@@ -177,20 +162,15 @@ def _excluded_years(tables: SurveyTables) -> list[int]:
     return [int(year) for year in chosen.loc[chosen["stated"] == 0, "value"]]
 
 
-def _completeness(tables: SurveyTables) -> tuple[Completeness, ...]:
+def _completeness(tables: SurveyTables) -> dict[str, Completeness]:
     rank = dict(zip(tables.bases["basis"], tables.bases["rank"].astype(int), strict=True))
     attributes = tables.attributes.assign(rank=tables.attributes["basis"].map(rank))
     known = attributes[attributes["value"].notna()]
     strongest = known.sort_values("rank", kind="stable").drop_duplicates(["study", "attribute"])
-    entries = []
-    for attribute in tables.attribute_definitions["attribute"]:
+    entries = {}
+    for attribute in map(str, tables.attribute_definitions["attribute"]):
         counted = strongest.loc[strongest["attribute"] == attribute, "basis"].value_counts()
-        entries.append(
-            Completeness(
-                attribute=str(attribute),
-                known=int(counted.sum()),
-                unknown=len(tables.studies) - int(counted.sum()),
-                by_basis={str(basis): int(counted[basis]) for basis in rank if basis in counted},
-            )
-        )
-    return tuple(entries)
+        by_basis = {str(basis): int(counted[basis]) for basis in rank if basis in counted}
+        number = sum(by_basis.values())
+        entries[attribute] = Completeness(number, len(tables.studies) - number, by_basis)
+    return entries

@@ -28,12 +28,12 @@ def test_129_studies_are_held_and_128_stated_and_the_difference_is_explained(
 def test_completeness_adds_up_for_every_attribute(tables: survey_data.SurveyTables) -> None:
     report = survey_data.fidelity(tables)
     known = tables.attributes.dropna(subset=["value"])
-    for entry in report.completeness:
+    for attribute, entry in report.completeness.items():
         assert entry.known + entry.unknown == 129
         assert sum(entry.by_basis.values()) == entry.known
-        assert entry.known == known.loc[known["attribute"] == entry.attribute, "study"].nunique()
+        assert entry.known == known.loc[known["attribute"] == attribute, "study"].nunique()
         assert "unknown" not in entry.by_basis
-    by_name = {entry.attribute: entry for entry in report.completeness}
+    by_name = report.completeness
     # Antonello2018, Lu2017a and OKeefe2017 are printed under parents alone: the kind is the text's.
     assert by_name["model"].by_basis == {"survey-table": 126, "survey-text": 3}
     assert by_name["extractor"].by_basis == {"survey-table": 129}
@@ -46,10 +46,9 @@ def test_the_strongest_basis_of_a_cell_is_counted(tables: survey_data.SurveyTabl
     attributes.loc[rows[1], "basis"] = "survey-text"
     before = survey_data.fidelity(tables)
     after = survey_data.fidelity(dataclasses.replace(tables, attributes=attributes))
-    task = next(i for i, e in enumerate(before.completeness) if e.attribute == "task")
     assert (
-        after.completeness[task].by_basis["survey-text"]
-        == before.completeness[task].by_basis["survey-text"] + 1
+        after.completeness["task"].by_basis["survey-text"]
+        == before.completeness["task"].by_basis["survey-text"] + 1
     )
 
 

@@ -99,16 +99,16 @@ def _print(report: FidelityReport) -> None:
         title="Counts",
     )
     typer.echo()
-    bases = list(dict.fromkeys(basis for c in report.completeness for basis in c.by_basis))
+    bases = list(dict.fromkeys(basis for c in report.completeness.values() for basis in c.by_basis))
     emit(
         [
             {
-                "attribute": c.attribute,
+                "attribute": attribute,
                 "known": c.known,
                 "unknown": c.unknown,
                 **{basis: c.by_basis.get(basis, 0) for basis in bases},
             }
-            for c in report.completeness
+            for attribute, c in report.completeness.items()
         ],
         ("attribute", "known", "unknown", *bases),
         Format.TABLE,
