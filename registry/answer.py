@@ -126,7 +126,7 @@ class Answer:
         question, asked = self.question, self.question.requirements
         if asked.bench_deg is None or asked.largest_deg is None:
             return None
-        without = question.relaxed(replace(asked, bench_deg=None))
+        without = Question(question.table, replace(asked, bench_deg=None))
         place = question.table.row_place
         more = without.measured & ~question.measured_places[place]
         found = _nearest(more, {}, without.shown_deg, place)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -36,14 +36,12 @@ class PipelineErrors:
     nominal_deg : error under the first condition alone
     availability : least answered share; NaN where one is unknown
     covers : whether the data set has conditions with all hazards
-    on_bench : errors kept on a bench by a share of units; NaN where none has asked yet
     """
 
     own_error_deg: Numbers
     nominal_deg: Numbers
     availability: Numbers
     covers: Flags
-    on_bench: dict[tuple[float, float], Numbers] = field(default_factory=dict)
 
 
 class DesignTable:

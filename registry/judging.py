@@ -7,10 +7,9 @@ of evidence are judged apart, and neither stands in for the other.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_FLOOR, Context
 from functools import cached_property
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,23 +38,12 @@ REPORTED = {
 #: Names of the requirements on what a question finds.
 _ARCHITECTURE = ("detector", "mask", "exclude_detector", "exclude_mask")
 PARTS = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
-_DESIGNS = (*_ARCHITECTURE, *PARTS)
-_STUDIES = ("task", "error", "exclude_task", "exclude_error", "exclude_accuracy")
-_CANDIDATES = (*_DESIGNS, *_STUDIES)
-_ERRORS = ("min_fov_deg", "tolerate", "sun_distance_au")
-_JUDGED = (*_CANDIDATES, *_ERRORS, "max_error_deg", "accuracy", "bench_deg", "confidence")
 #: Those that a measured pipeline can meet or miss.
 _MEASURED = (
-    *("max_error_deg", "accuracy", "exclude_accuracy", *_ERRORS),
+    *("max_error_deg", "accuracy", "exclude_accuracy"),
+    *("min_fov_deg", "tolerate", "sun_distance_au"),
     *("min_availability", "max_latency_us", "exclude_needs"),
 )
-
-Found = TypeVar("Found")
-
-
-def _shared(*names: str) -> Callable[[Callable[[Question], Found]], cached_property[Found]]:
-    """Return a decorator for what is the same for questions that ask the same by some names."""
-    return lambda find: cached_property(lambda question: question.once(find, of=names))
 
 
 class Question:
@@ -64,32 +52,18 @@ class Question:
     def __init__(self, table: DesignTable, requirements: Requirements) -> None:
         self.table = table
         self.requirements = requirements
-        self._found: dict[tuple[object, ...], Any] = {}
 
-    def relaxed(self, requirements: Requirements) -> Question:
-        """Return other requirements put to the same table; what they leave as it is, is shared."""
-        found = Question(self.table, requirements)
-        found._found = self._found
-        return found
-
-    def once(self, find: Callable[..., Found], *of_what: str, of: Iterable[str]) -> Found:
-        """Return what a method finds, once for relaxed questions that ask the same by names."""
-        key = (find, *of_what, *map(self.requirements.value_of, of))
-        if key not in self._found:
-            self._found[key] = find(self, *of_what)
-        return self._found[key]  # type: ignore[no-any-return]  # what this method found
-
-    @_shared(*_ERRORS)
+    @cached_property
     def errors(self) -> PipelineErrors:
         """Own errors of all pipelines under the required hazards and field."""
         return self.table.errors(self.requirements.hazards, self.requirements.half_field_deg)
 
-    @_shared(*_CANDIDATES)
+    @cached_property
     def candidates(self) -> Flags:
         """Pipelines of the required designs on the required architectures."""
         return self.designs[self.table.row_design] & self.places[self.table.row_place]
 
-    @_shared(*_JUDGED)
+    @cached_property
     def judged_deg(self) -> Numbers:
         """Error that a limit is compared with: kept by the share of units (and stated benches)."""
         table, asked, own = self.table, self.requirements, self.errors.own_error_deg
@@ -99,10 +73,9 @@ class Question:
         among = np.isfinite(found)
         if asked.largest_deg is not None:  # what misses without a bench misses with one
             among &= found <= asked.largest_deg
-        known = self.errors.on_bench.setdefault((asked.bench_deg, asked.share), found * np.nan)
-        new = among & np.isnan(known)
-        known[new] = table.within(own, new, asked.bench_deg, asked.share)
-        return np.where(among, known, np.inf)
+        found[~among] = np.inf
+        found[among] = table.within(own, among, asked.bench_deg, asked.share)
+        return found
 
     def judged_alone_deg(self, row: int) -> float:
         """Return the same of one pipeline, also where it misses without a bench."""
@@ -120,12 +93,8 @@ class Question:
     @cached_property
     def by_pipeline(self) -> Mapping[str, States]:
         """State of each measured pipeline for every requirement that measurement can judge."""
-        find, of_error = Question._by_pipeline, ("max_error_deg", "accuracy", "exclude_accuracy")
-        return {
-            name: self.once(find, name, of=(name, *(_JUDGED if name in of_error else _ERRORS)))
-            for name in self._judged_names
-            if name in _MEASURED
-        }
+        names = [name for name in self._judged_names if name in _MEASURED]
+        return {name: self._by_pipeline(name) for name in names}
 
     def _by_pipeline(self, name: str) -> States:
         errors, limit = self.errors, self.requirements.value_of(name)
@@ -153,11 +122,7 @@ class Question:
     @cached_property
     def by_report(self) -> Mapping[str, States]:
         """State of each report for every requirement but detector and mask."""
-        find = Question._by_report
-        return {
-            name: self.once(find, name, of=(name, *(_DESIGNS if name in PARTS else ("task",))))
-            for name in self._judged_names
-        }
+        return {name: self._by_report(name) for name in self._judged_names}
 
     def _by_report(self, name: str) -> States:
         table, attribute = self.table, name.removeprefix(EXCLUDE)
@@ -187,7 +152,7 @@ class Question:
         passed = () if light is None or light.hazard else ("sun_distance_au",)
         return [name for name in names if name not in (*_ARCHITECTURE, *passed)]
 
-    @_shared(*_DESIGNS)
+    @cached_property
     def _with_parts(self) -> States:
         """State of each report for model, extractor and properties: those that its study uses."""
         table, study = self.table, self.table.report_study
@@ -208,7 +173,7 @@ class Question:
     def by_place(self) -> Mapping[str, States]:
         """State of each architecture for mass, power and rate, by all that is built of it."""
         asked = [name for name in OF_PRODUCTS if self.requirements.value_of(name) is not None]
-        return {name: self.once(Question._by_place, name, of=(name,)) for name in asked}
+        return {name: self._by_place(name) for name in asked}
 
     def _by_place(self, name: str) -> States:
         kept, known = self._within(name)
@@ -276,7 +241,7 @@ class Question:
         found[place] = True
         return found
 
-    @_shared(*_ARCHITECTURE)
+    @cached_property
     def _architectures(self) -> Flags:
         """Architectures with the required detector and mask."""
         table, asked = self.table, self.requirements
@@ -300,7 +265,7 @@ class Question:
             found |= is_class[table.row_place] & (judged < most)
         return found
 
-    @_shared(*_DESIGNS)
+    @cached_property
     def designs(self) -> Flags:
         """Designs that have the required parts."""
         table, asked = self.table, self.requirements
@@ -316,7 +281,7 @@ class Question:
             )
         return found
 
-    @_shared(*_STUDIES)
+    @cached_property
     def studies(self) -> Flags:
         """Studies with the required tasks and errors, none of which is excluded."""
         found = np.ones(len(self.table.keys), bool)
@@ -340,7 +305,7 @@ class Question:
         wanted = set(asked.include.get("task", tasks)) - {*excluded}
         return table.studies_with("task", wanted) | ~table.studies_with("task", tasks)
 
-    @_shared(*_ARCHITECTURE, *_STUDIES)
+    @cached_property
     def places(self) -> Flags:
         """Architectures that a study with the tasks and errors has, or advice means."""
         table, asked = self.table, self.requirements

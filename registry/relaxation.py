@@ -132,7 +132,7 @@ def _candidates(question: Question, name: str, asked: Value) -> list[Value]:
 
 def _nearest_limit(question: Question, name: str) -> float | None:
     """Return the strictest limit that is kept by what meets all else; None if there is none."""
-    rest = question.relaxed(question.requirements.without(name))
+    rest = Question(question.table, question.requirements.without(name))
     table = question.table
     if name == "min_fov_deg":
         reported = table.report_numbers["fov_deg"][rest.reported]
@@ -162,7 +162,7 @@ def _bench(question: Question) -> str:
     asked = question.requirements
     if asked.bench_deg is None or asked.largest_deg is None:
         return ""
-    without = question.relaxed(replace(asked, bench_deg=None))
+    without = Question(question.table, replace(asked, bench_deg=None))
     needed = without.bench_for(np.flatnonzero(without.measured).tolist())
     if not needed:
         return ""
@@ -173,4 +173,4 @@ def _bench(question: Question) -> str:
 
 
 def _count(question: Question, requirements: Requirements) -> int:
-    return int(np.count_nonzero(question.relaxed(requirements).matching_places))
+    return int(np.count_nonzero(Question(question.table, requirements).matching_places))
