@@ -23,10 +23,8 @@ from api.deposit.crate import CRATE, crate
 from api.deposit.deposit_tables import MeasuredTable, frames_table, measured_tables, read_descriptor
 from api.deposit.forms import write_other_forms
 from api.deposit.frames import write_frames
-from api.deposit.package import DESCRIPTOR, NAME, package
-from api.deposit.packing import pack
-from api.deposit.readme import BIBLIOGRAPHY, readme
-from api.deposit.terms import FACTS, terms
+from api.deposit.package import BIBLIOGRAPHY, DESCRIPTOR, FACTS, NAME, pack, package
+from api.deposit.readme import readme
 from api.metadata.bundled import documents
 from api.metadata.citation import of_dataset
 from api.metadata.codemeta import NAME as CODEMETA
@@ -199,7 +197,6 @@ def fill(
             who,
             files,
             {r["path"]: (r["title"], r["description"]) for r in resources},
-            {name: terms(name) for name in files},
             descriptor["keywords"],
         ),
     )

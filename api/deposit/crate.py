@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import PurePosixPath
 from typing import Any
 from urllib.parse import quote
 
+from api.deposit.package import CC_BY, terms
 from api.metadata.citation import Author
 from api.metadata.identity import Identity
 
 CRATE = "ro-crate-metadata.json"
-VERSION = "1.2"
-SPECIFICATION = f"https://w3id.org/ro/crate/{VERSION}"
+SPECIFICATION = "https://w3id.org/ro/crate/1.2"
 _MEDIA_TYPES = {
     "": "text/plain",
     ".bib": "application/x-bibtex",
@@ -28,23 +29,11 @@ _MEDIA_TYPES = {
     ".sqlite": "application/vnd.sqlite3",
     ".txt": "text/plain",
 }
-#: Names of files that no table's description gives one.
-_NAMES = {
-    "card.json": "Card of a data set: what the arrays are",
-    "calibration.npz": "Samples to calibrate with",
-    "test.npz": "Samples to test with",
-    "repeat.npz": "Samples of poses held still",
-    "references.npz": "Flat and dark readings",
-}
 _LICENCES = {
     "MIT": ("https://spdx.org/licenses/MIT", "MIT License"),
-    "CC-BY-4.0": (
-        "https://creativecommons.org/licenses/by/4.0/",
-        "Creative Commons Attribution 4.0 International",
-    ),
+    "CC-BY-4.0": (CC_BY["path"], CC_BY["title"]),
 }
-
-
+#: Files that are no resource of the data package, by their names or folders.
 _KINDS = {
     "LICENSE": "Terms of use.",
     "CITATION.cff": "How to cite, in the Citation File Format.",
@@ -53,30 +42,24 @@ _KINDS = {
     "datapackage.json": "Types, units, keys and meaning of every column (Data Package v2).",
     "sun-sensor-atlas.sqlite": "Every table in one SQLite file, with keys.",
     "studies.bib": "The identified studies as BibTeX.",
+    "studies.ris": "The identified studies as RIS.",
     "unmapped-studies.bib": "The studies the survey does not map as BibTeX.",
     "unmapped-studies.ris": "The studies the survey does not map as RIS.",
-    "studies.ris": "The identified studies as RIS.",
-    "card.json": "Card",
-    "checksums-sha256.txt": "Checksums",
-    "preview.png": "Picture",
-    "references.npz": "Flat and dark readings",
-    "calibration.csv": "Table of the calibration split",
-    "test.csv": "Table of the test split",
-    "repeat.csv": "Table of the repeat split",
+    "card.json": "Card of a data set: what the arrays are.",
+    "checksums-sha256.txt": "Checksums.",
+    "preview.png": "Picture of samples of a data set.",
+    "references.npz": "Flat and dark readings.",
     "rescore.py": "Installs the code and measures scores again from the samples.",
+    "parquet": "The table as Parquet.",
+    "croissant": "As programs for machine learning load it (Croissant).",
+    "frames": "Table of a split of the samples.",
 }
-
-
-def licence_address(licence: str) -> str:
-    """Return the identifier of a licence in a crate, by its SPDX identifier."""
-    return _LICENCES[licence][0]
 
 
 def crate(
     identity: Identity,
     files: Mapping[str, tuple[int, str]],
     descriptions: Mapping[str, tuple[str, str]],
-    licence_of: Mapping[str, str],
     keywords: Sequence[str],
 ) -> dict[str, Any]:
     """Describe the bundle.
@@ -87,18 +70,17 @@ def crate(
     files : size in bytes and SHA-256 by path, every file but this one and the list
         of checksums
     descriptions : (name, description) by path, where there is one
-    licence_of : "MIT" or "CC-BY-4.0" by path
     keywords : of the bundle
     """
     authors = [_author(author, n) for n, author in enumerate(identity.authors, start=1)]
     affiliations = {
-        author.affiliation: {
-            "@id": _affiliation(author.affiliation),
+        one["affiliation"]["@id"]: {
+            "@id": one["affiliation"]["@id"],
             "@type": "Organization",
             "name": author.affiliation,
         }
-        for author in identity.authors
-        if author.affiliation
+        for one, author in zip(authors, identity.authors, strict=True)
+        if "affiliation" in one
     }
     licences = [
         {
@@ -117,8 +99,8 @@ def crate(
         "description": identity.summary,
         "version": identity.version,
         "datePublished": identity.released.isoformat(),
-        "license": _one_or_all([_reference(licence) for licence in licences]),
-        "author": _one_or_all([_reference(author) for author in authors]),
+        "license": [{"@id": licence["@id"]} for licence in licences],
+        "author": [{"@id": author["@id"]} for author in authors],
         "keywords": ", ".join(keywords),
         "hasPart": [{"@id": path} for path in sorted(files)],
     }
@@ -128,17 +110,11 @@ def crate(
         "conformsTo": {"@id": SPECIFICATION},
         "about": {"@id": "./"},
     }
-    parts = [
-        _file(path, files[path], descriptions.get(path), licence_of[path]) for path in sorted(files)
-    ]
+    parts = [_file(path, *files[path], descriptions.get(path)) for path in sorted(files)]
     return {
         "@context": f"{SPECIFICATION}/context",
         "@graph": [descriptor, root, *parts, *authors, *affiliations.values(), *licences],
     }
-
-
-def _reference(entity: Mapping[str, Any]) -> dict[str, str]:
-    return {"@id": entity["@id"]}
 
 
 def _author(author: Author, number: int) -> dict[str, Any]:
@@ -153,45 +129,22 @@ def _author(author: Author, number: int) -> dict[str, Any]:
         "givenName": author.given,
     }
     if author.affiliation:
-        entity["affiliation"] = {"@id": _affiliation(author.affiliation)}
+        named = quote(author.affiliation.lower().replace(" ", "-"), safe="")
+        entity["affiliation"] = {"@id": f"#{named}"}
     return entity
 
 
-def _affiliation(name: str) -> str:
-    return f"#{quote(name.lower().replace(' ', '-'), safe='')}"
-
-
-def _file(
-    path: str, file: tuple[int, str], described: tuple[str, str] | None, licence: str
-) -> dict[str, Any]:
-    name = path.rpartition("/")[2]
-    suffix = f".{name.rpartition('.')[2]}" if "." in name else ""
-    entity: dict[str, Any] = {
+def _file(path: str, size: int, digest: str, described: tuple[str, str] | None) -> dict[str, Any]:
+    at = PurePosixPath(path)
+    said = _KINDS.get(at.name) or _KINDS.get(at.parts[0], "Part of the bundle.")
+    name, description = described or (at.name, said)
+    return {
         "@id": path,
         "@type": "File",
-        "name": described[0] if described else _NAMES.get(name, name),
-        "encodingFormat": _MEDIA_TYPES[suffix],
-        "contentSize": str(file[0]),
-        "sha256": file[1],
-        "license": {"@id": _LICENCES[licence][0]},
+        "name": name,
+        "encodingFormat": _MEDIA_TYPES[at.suffix],
+        "contentSize": str(size),
+        "sha256": digest,
+        "license": {"@id": _LICENCES[terms(path)][0]},
+        "description": description,
     }
-    entity["description"] = described[1] if described else _describe(path)
-    return entity
-
-
-def _describe(path: str) -> str:
-    """Say what a file is that is no resource of the data package."""
-    folder, _, rest = path.partition("/")
-    if folder == "parquet":
-        return f"The table {rest.removesuffix('.parquet')} as Parquet."
-    if folder == "croissant":
-        return f"{rest.removesuffix('.json')} as programs for machine learning load it (Croissant)."
-    if folder == "frames":
-        dataset, _, name = rest.partition("/")
-        kind = _KINDS.get(name.rpartition("/")[2], "Part")
-        return f"{kind} of the samples of {dataset}."
-    return _KINDS.get(path.rpartition("/")[2], "Part of the bundle.")
-
-
-def _one_or_all(references: Sequence[dict[str, str]]) -> Any:
-    return references[0] if len(references) == 1 else list(references)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from api.cells import cell
-from api.deposit import claim_tables, derived_tables
+from api.deposit import derived_tables
 from api.metadata.fields import schema
 from api.schema.algorithms import Algorithm
 from api.schema.curves import Curve
@@ -31,10 +31,7 @@ from api.schema.deposited import (
 )
 from api.schema.scores import LeaderboardRow, Score
 from api.schema.table import Model
-from benchmark import datasets
 from benchmark.claims.ledger import Entry, ledger
-from benchmark.datasets.pins import Pin as DataPin
-from benchmark.datasets.pins import Place
 from benchmark.leaderboard.board import build
 from benchmark.learning_curves import record as curves
 from benchmark.results.store import PUBLISHED_STUDIES, Store
@@ -45,9 +42,10 @@ from registry.taxonomy import taxonomy_rows
 
 #: Columns of sweeps that stand in the bundle under another name or value.
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})
-_PLACE = ("detector", "mask")
 _PIPELINE = ("dataset", "condition", "extractor", "model")
 _KEY = (*_PIPELINE, "unit")
+_DATASET = {"dataset": ("datasets", "name")}
+_PARTS = {**_DATASET, "extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
 _RANKED = (
     *(
         "rank",
@@ -106,15 +104,28 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         raise NothingPublishedError(
             f"{store.scores_directory} is missing or empty; run `sunatlas leaderboard update`"
         )
-    names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
-    foreign = {"dataset": ("datasets", "name"), **names}
-    swept = sweeps.swept(published)
     scores = sorted(
         (*compared, *beside.rows(unit=None)), key=lambda row: [row[name] for name in _KEY]
     )
+    pins = {**store.pins(), **beside.pins()}
     return [
-        _algorithms(),
-        _datasets(),
+        _table(
+            "algorithms",
+            Algorithm,
+            "Algorithms",
+            "Every implementation of an extractor or a model.",
+            [implementation.to_dict() for implementation in catalogue().implementations()],
+            primary=("name",),
+        ),
+        _table(
+            "datasets",
+            DepositedDataset,
+            "Data sets",
+            "The simulated sensors that pipelines are scored on: the standard ones, and sensors of "
+            "single studies, on which no others are scored.",
+            derived_tables.datasets(),
+            primary=("name",),
+        ),
         _table(
             "scores",
             Score,
@@ -123,14 +134,34 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
             "function of code and data.",
             scores,
             primary=_KEY,
-            foreign=foreign,
+            foreign=_PARTS,
         ),
-        _leaderboard(compared, foreign),
-        _pins({**store.pins(), **beside.pins()}),
-        *([_sweeps(swept)] if swept else []),
-        *_curves(curves.published_curves(published), foreign),
-        *_measured_tables(foreign, scores),
-        *_claims(ledger(published)),
+        _table(
+            "leaderboard",
+            LeaderboardRow,
+            "Leaderboard",
+            "Pipelines ranked in each data set and condition; numbers of every row stand in "
+            "scores.",
+            [
+                {name: row[name] for name in _RANKED}
+                for dataset in build(compared)["datasets"]
+                for row in dataset["rows"]
+            ],
+            primary=_PIPELINE,
+            foreign=_PARTS,
+        ),
+        _table(
+            "data",
+            Pin,
+            "Generated data",
+            "Hash of every generated split of every data set, and its Cramer-Rao bound.",
+            [dataclasses.asdict(pin) for _, pin in sorted(pins.items())],
+            primary=("dataset", "condition", "split"),
+            foreign=_DATASET,
+        ),
+        *_of_experiments(published),
+        *_of_facts(scores),
+        *_of_claims(ledger(published)),
     ]
 
 
@@ -144,13 +175,58 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
         "condition, whole. The code makes those of other conditions and units.",
         rows,
         primary=("dataset", "condition", "split"),
-        foreign={"dataset": ("datasets", "name")},
+        foreign=_DATASET,
     )
 
 
-def _measured_tables(
-    foreign: Mapping[str, tuple[str, str]], scores: Sequence[Mapping[str, Any]]
-) -> list[MeasuredTable]:
+def _of_experiments(published: Path) -> Iterator[MeasuredTable]:
+    """Make the tables of sweeps and learning curves, where there are any."""
+    if swept := sweeps.swept(published):
+        # An empty cell is a missing value, which a key may not be: a refused series says so.
+        rows = [
+            {
+                **{name: row[name] or "none" for name in ("series", "sweep", "point")},
+                **{name: value for name, value in row.items() if name not in _RENAMED},
+                "measured_in": row["unit"],
+            }
+            for row in swept
+        ]
+        yield _table(
+            "sweeps",
+            DepositedSweep,
+            "Sweeps",
+            "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
+            rows,
+            primary=("series", "sweep", "point", "extractor"),
+            foreign={"extractor": ("algorithms", "name")},
+        )
+    if rows := curves.published_curves(published):
+        yield _table(
+            "curves",
+            Curve,
+            "Learning curves",
+            "How many calibration poses the leaders of each data set need to be within 10 % of "
+            "their floor.",
+            [{name: row[name] for name in row if name != "points"} for row in rows],
+            primary=_PIPELINE,
+            foreign=_PARTS,
+        )
+        yield _table(
+            "curve_points",
+            DepositedPoint,
+            "Points of the learning curves",
+            "Errors after so many calibration poses, over draws of poses and units of the sensor.",
+            [
+                {**{name: row[name] for name in _PIPELINE}, **point}
+                for row in rows
+                for point in row["points"]
+            ],
+            primary=(*_PIPELINE, "poses"),
+            foreign=_PARTS,
+        )
+
+
+def _of_facts(scores: Sequence[Mapping[str, Any]]) -> list[MeasuredTable]:
     """Make the tables that follow from facts and plan, with the numbers of none."""
     return [
         _table(
@@ -160,8 +236,8 @@ def _measured_tables(
             "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
             "each part, and the rule that fills it where the study does not state it.",
             derived_tables.resolution(scores),
-            primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
-            foreign={**foreign, "study": ("all_studies", "study")},
+            primary=("study", "detector", "mask", *_PIPELINE),
+            foreign={**_PARTS, "study": ("all_studies", "study")},
         ),
         _table(
             "all_studies",
@@ -201,7 +277,7 @@ def _measured_tables(
     ]
 
 
-def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
+def _of_claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
     """Make the tables of the survey's claims, as they came out."""
     claimed = {"claim": ("claims", "id")}
     return [
@@ -210,7 +286,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
             ClaimVerdict,
             "Verdicts of the claims",
             "Each of the survey's statements about algorithms, put to the test.",
-            claim_tables.verdicts(entries),
+            derived_tables.claim_verdicts(entries),
             primary=("claim",),
             foreign=claimed,
         ),
@@ -219,7 +295,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
             DepositedRule,
             "Rules of the claims",
             "Criteria of each claim, with the result of the trials.",
-            claim_tables.rules(entries),
+            derived_tables.claim_rules(entries),
             primary=("claim", "rule"),
             foreign=claimed,
         ),
@@ -228,135 +304,11 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
             ClaimTrial,
             "Trials of the claims",
             "The statistic of every rule in every trial.",
-            claim_tables.trials(entries),
+            derived_tables.claim_trials(entries),
             primary=("claim", "rule", "trial"),
             foreign=claimed,
         ),
     ]
-
-
-def _leaderboard(
-    scores: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
-) -> MeasuredTable:
-    board = build(scores)
-    rows = [
-        {name: row[name] for name in _RANKED}
-        for dataset in board["datasets"]
-        for row in dataset["rows"]
-    ]
-    return _table(
-        "leaderboard",
-        LeaderboardRow,
-        "Leaderboard",
-        "Pipelines ranked in each data set and condition; numbers of every row stand in scores.",
-        rows,
-        primary=_PIPELINE,
-        foreign=foreign,
-    )
-
-
-def _pins(pins: Mapping[Place, DataPin]) -> MeasuredTable:
-    return _table(
-        "data",
-        Pin,
-        "Generated data",
-        "Hash of every generated split of every data set, and its Cramer-Rao bound.",
-        [dataclasses.asdict(pin) for _, pin in sorted(pins.items())],
-        primary=("dataset", "condition", "split"),
-        foreign={"dataset": ("datasets", "name")},
-    )
-
-
-def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
-    # An empty cell is a missing value, which a key may not be: a refused series says so in words.
-    named = [
-        {
-            **{name: row[name] or "none" for name in ("series", "sweep", "point")},
-            **{name: value for name, value in row.items() if name not in _RENAMED},
-            "measured_in": row["unit"],
-        }
-        for row in rows
-    ]
-    return _table(
-        "sweeps",
-        DepositedSweep,
-        "Sweeps",
-        "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
-        named,
-        primary=("series", "sweep", "point", "extractor"),
-        foreign={"extractor": ("algorithms", "name")},
-    )
-
-
-def _curves(
-    rows: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
-) -> list[MeasuredTable]:
-    """Make the table of learning curves and that of their points; none where there are none."""
-    if not rows:
-        return []
-    points = [
-        {**{name: row[name] for name in _PIPELINE}, **point}
-        for row in rows
-        for point in row["points"]
-    ]
-    return [
-        _table(
-            "curves",
-            Curve,
-            "Learning curves",
-            "How many calibration poses the leaders of each data set need to be within 10 % of "
-            "their floor.",
-            [{name: row[name] for name in row if name != "points"} for row in rows],
-            primary=_PIPELINE,
-            foreign=foreign,
-        ),
-        _table(
-            "curve_points",
-            DepositedPoint,
-            "Points of the learning curves",
-            "Errors after so many calibration poses, over draws of poses and units of the sensor.",
-            points,
-            primary=(*_PIPELINE, "poses"),
-            foreign=foreign,
-        ),
-    ]
-
-
-def _algorithms() -> MeasuredTable:
-    return _table(
-        "algorithms",
-        Algorithm,
-        "Algorithms",
-        "Every implementation of an extractor or a model.",
-        [implementation.to_dict() for implementation in catalogue().implementations()],
-        primary=("name",),
-    )
-
-
-def _datasets() -> MeasuredTable:
-    rows = [
-        {
-            "name": preset.name,
-            "version": preset.version,
-            "detector": preset.detector,
-            "mask": preset.mask,
-            "observation": str(preset.observation),
-            "half_fov_deg": preset.geometry.half_fov_deg,
-            "conditions": preset.conditions,
-            "description": preset.description,
-            "follows": preset.follows,
-        }
-        for preset in map(datasets.get, sorted((*datasets.names(), *datasets.study_names())))
-    ]
-    return _table(
-        "datasets",
-        DepositedDataset,
-        "Data sets",
-        "The simulated sensors that pipelines are scored on: the standard ones, and sensors of "
-        "single studies, on which no others are scored.",
-        rows,
-        primary=("name",),
-    )
 
 
 def _table(

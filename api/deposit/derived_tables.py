@@ -1,4 +1,4 @@
-"""Tables of the bundle that are derived from facts and plan: resolution, verdicts, publications."""
+"""Rows of the bundle's tables that are derived: resolution, verdicts, publications, claims."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import survey_data
+from benchmark import datasets as presets
+from benchmark.claims.ledger import Entry
 from benchmark.metrics.ranking import own_errors
 from benchmark.plan.combinations import scorable_plan, study_plans
 from benchmark.plan.shown import data_sets
@@ -51,6 +53,22 @@ def resolution(
         for key, found in resolved.items()
         for pipeline in found.pipelines
         for setting in pipeline.settings
+    ]
+
+
+def datasets() -> list[Mapping[str, Any]]:
+    """Return a row for each standard data set and each sensor of a single study."""
+    names = sorted((*presets.names(), *presets.study_names()))
+    return [
+        {
+            **{name: getattr(one, name) for name in ("name", "version", "detector", "mask")},
+            "observation": str(one.observation),
+            "half_fov_deg": one.geometry.half_fov_deg,
+            "conditions": one.conditions,
+            "description": one.description,
+            "follows": one.follows,
+        }
+        for one in map(presets.get, names)
     ]
 
 
@@ -102,3 +120,53 @@ def publication_counts() -> list[Mapping[str, Any]]:
         {"per": row.kind, "year_or_venue": row.value, "studies_count": row.studies}
         for row in publications(survey_data.load())
     ]
+
+
+def claim_verdicts(entries: Sequence[Entry]) -> list[Mapping[str, Any]]:
+    """Return a row for each claim."""
+    return [
+        {
+            "claim": entry.claim.id,
+            "claim_verdict": entry.verdict,
+            "claim_case": entry.review.case,
+            "claim_sentence": entry.review.sentence,
+            "measured_on": entry.claim.measured_on,
+            "replicate": entry.claim.replicate,
+            "second_method": entry.claim.second,
+            "second_agrees": entry.agrees,
+            "explanation": entry.explanation,
+        }
+        for entry in entries
+    ]
+
+
+def claim_rules(entries: Sequence[Entry]) -> list[Mapping[str, Any]]:
+    """Return a row for each rule, with what the trials say of it."""
+    return [
+        {
+            "claim": entry.claim.id,
+            **{name: value for name, value in rule.items() if name != "trials"},
+            "trials_count": rule["trials"],
+        }
+        for entry in entries
+        for rule in entry.to_dict()["rules"]
+    ]
+
+
+def claim_trials(entries: Sequence[Entry]) -> list[Mapping[str, Any]]:
+    """Return a row for each rule and trial, with the number that was measured."""
+    found: list[Mapping[str, Any]] = []
+    for outcome in (entry.outcome for entry in entries if entry.outcome is not None):
+        for rule, values in outcome.values.items():
+            second = outcome.second.get(rule, (None,) * len(values))
+            found += [
+                {
+                    "claim": outcome.claim,
+                    "rule": rule,
+                    "trial": number,
+                    "statistic_value": value,
+                    "second_value": other,
+                }
+                for number, (value, other) in enumerate(zip(values, second, strict=True))
+            ]
+    return found

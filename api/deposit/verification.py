@@ -22,13 +22,13 @@ from pydantic import (
 )
 
 from api.deposit.crate import CRATE, SPECIFICATION
-from api.deposit.forms import of_forms, of_terms
-from api.deposit.limits import excess_size, unfit_names
-from api.deposit.package import DESCRIPTOR, NAME, PROFILE
+from api.deposit.forms import Problem, of_forms
+from api.deposit.package import DESCRIPTOR, FACTS, NAME, PROFILE
 from api.metadata.fields import TABLE_SCHEMA
-from files.checksums import CHECKSUMS, contents, differences, read_checksums
+from files.checksums import CHECKSUMS, differences, read_checksums
 
-Problem = tuple[str, str]
+#: Terms, without which a bundle does not go out.
+_TERMS = ("LICENSE", *(f"{folder}/LICENSE" for folder in FACTS))
 
 
 class _Member(BaseModel):
@@ -125,8 +125,8 @@ class NoBundleError(ValueError):
 def verify(directory: Path) -> list[Problem]:
     """Check a bundle: (file, what is wrong with it); empty where all holds.
 
-    Sizes and names first, then checksums; where they hold, descriptor and crate against them; where
-    these hold, every table against its description; at last its other forms and its licences.
+    Checksums first; where they hold, descriptor and crate against them; where these hold, every
+    table against its description; at last its other forms.
     Whoever makes the bundle anew can change a number in all of them: `UNSEEN`.
 
     Raises
@@ -138,10 +138,7 @@ def verify(directory: Path) -> list[Problem]:
     """
     if not (directory / CHECKSUMS).is_file():
         raise NoBundleError(f"{directory}: not a bundle, it has no {CHECKSUMS}")
-    names = contents(directory)
-    if (large := excess_size(directory, names)) is not None:
-        return [large]
-    if wrong := [*unfit_names(names), *differences(directory)]:
+    if wrong := differences(directory):
         return wrong
     listed = read_checksums(directory)
     if DESCRIPTOR not in listed:
@@ -157,7 +154,12 @@ def verify(directory: Path) -> list[Problem]:
     return (
         wrong
         or _of_tables(directory, package)
-        or [*of_terms(directory, package, crate, listed), *of_forms(directory, package, listed)]
+        or [
+            (name, "missing; a bundle goes out with its terms")
+            for name in _TERMS
+            if name not in listed
+        ]
+        or of_forms(directory, package, listed)
     )
 
 

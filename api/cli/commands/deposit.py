@@ -93,8 +93,8 @@ def verify(
     builds and its samples with the data sets, which takes minutes (--quick compares hashes
     instead). Differences are listed with their file, and the exit code is 1. No network is needed.
 
-    --alone checks the bundle without this version's data: Parquet files, database and licences are
-    compared with the tables. It cannot detect a number that was changed in every form of its table.
+    --alone checks the bundle without this version's data: Parquet files and database are compared
+    with the tables. It cannot detect a number that was changed in every form of its table.
     """
     if alone and quick:
         raise WrongCallError("--quick is of the comparison that --alone leaves out: give one")

@@ -18,15 +18,12 @@ from typing import Literal
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from api.deposit import limits
 from api.deposit.archives.archive import Archive, Metadata, Record
 from api.deposit.archives.metadata import Description, description
 from api.deposit.archives.server import ArchiveError
-from api.deposit.package import NAME
-from api.deposit.packing import pack
+from api.deposit.package import NAME, pack
 from api.deposit.verification import verify
 from files.atomic import replace_file, temporary_directory_beside
-from files.checksums import contents
 
 #: Files that are also sent by themselves, to be read or searched without the zip.
 APART = (
@@ -64,12 +61,10 @@ def verified(directory: Path, undone: str) -> Iterator[Bundle]:
     Raises
     ------
     ArchiveError
-        Where anything in the bundle does not hold, it is larger than an archive takes, or its
-        CITATION.cff lacks authors or the repository.
+        Where anything in the bundle does not hold, or its CITATION.cff lacks authors or the
+        repository.
     """
     directory = Path(os.path.abspath(directory))  # noqa: PTH100 - a link stays one
-    if (large := limits.excess_size(directory, contents(directory))) is not None:
-        raise ArchiveError(f"{directory}: {large[0]} {large[1]}; {undone}")
     with temporary_directory_beside(directory) as private:
         copy = private / directory.name
         try:

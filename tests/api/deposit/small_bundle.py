@@ -11,9 +11,7 @@ from pathlib import Path
 from api.deposit.crate import CRATE, crate
 from api.deposit.deposit_tables import MeasuredTable
 from api.deposit.forms import write_other_forms
-from api.deposit.package import DESCRIPTOR, package
-from api.deposit.packing import pack
-from api.deposit.terms import terms
+from api.deposit.package import DESCRIPTOR, pack, package
 from api.metadata.citation import authors
 from api.metadata.identity import Identity, identity
 from files.atomic import temporary_directory
@@ -89,7 +87,7 @@ def _write(directory: Path, people: str, readme: str) -> Path:
         name: ((directory / name).stat().st_size, sha256(directory / name))
         for name in contents(directory)
     }
-    document = crate(who, described, {}, {name: terms(name) for name in described}, ["sun sensor"])
+    document = crate(who, described, {}, ["sun sensor"])
     (directory / CRATE).write_text(json.dumps(document))
     write_checksums(directory)
     pack(directory, directory.with_name(ZIP), "sun-sensor-atlas-0.1.0", who.released)

@@ -1,4 +1,4 @@
-"""What can be seen in a bundle alone: forms of its tables, their ends, its terms."""
+"""What can be seen in a bundle alone: forms of its tables."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-import pyarrow as pa
 import pytest
-from pyarrow import parquet
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
@@ -64,7 +62,7 @@ def test_a_number_changed_in_every_form_is_not_seen_and_this_is_said(small):
 
 
 @pytest.mark.parametrize("name", [PARQUET, DATABASE])
-@pytest.mark.parametrize("share", [0.0, 0.5, 0.999])
+@pytest.mark.parametrize("share", [0.0, 0.5])
 def test_a_form_that_is_cut_short_is_seen(small, name, share):
     data = (small / name).read_bytes()
     (small / name).write_bytes(data[: int(share * len(data))])
@@ -103,113 +101,6 @@ def test_a_database_that_holds_anything_else_is_seen(small, statement):
         base.execute(statement)
         base.commit()
     assert found(small).keys() == {DATABASE}
-
-
-def test_a_database_that_another_release_wrote_holds_the_same(small):
-    with closing(sqlite3.connect(small / DATABASE)) as base:
-        base.execute("PRAGMA page_size = 1024")
-        base.execute("VACUUM")
-    assert found(small) == {}
-
-
-def test_a_parquet_that_another_release_wrote_holds_the_same(small):
-    table = parquet.read_table(small / PARQUET)
-    parquet.write_table(table, small / PARQUET, compression="none")
-    assert found(small) == {}
-
-
-@pytest.mark.parametrize(
-    "table", [pa.table({"other": ["a"]}), pa.table({"name": [1]}), pa.table({"name": ["a"]})]
-)
-def test_a_parquet_of_other_columns_is_seen(small, table):
-    """The last one lacks what its column means."""
-    parquet.write_table(table, small / PARQUET)
-    assert found(small).keys() == {PARQUET}
-
-
-ERRORS = "benchmark/samples/x.parquet"
-
-
-@pytest.fixture
-def with_errors(small):
-    """A bundle with a Parquet file that no CSV has."""
-    (small / ERRORS).parent.mkdir()
-    table = pa.table({"sample": range(5000), "error_deg": [0.1] * 5000})
-    parquet.write_table(table, small / ERRORS, row_group_size=500)
-    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
-    package["resources"].append(
-        {
-            "name": "errors-x",
-            "title": "x: errors",
-            "description": "Errors. sample: its number. error_deg: its error.",
-            "path": ERRORS,
-            "licenses": package["resources"][0]["licenses"],
-        }
-    )
-    (small / DESCRIPTOR).write_text(json.dumps(package))
-    crate = json.loads((small / CRATE).read_text("utf-8"))
-    one = next(entity for entity in crate["@graph"] if entity["@id"] == TABLE)
-    crate["@graph"].append({**one, "@id": ERRORS})
-    (small / CRATE).write_text(json.dumps(crate))
-    return small
-
-
-def test_errors_that_no_csv_has_are_read_to_their_end(with_errors):
-    assert found(with_errors) == {}
-    data = (with_errors / ERRORS).read_bytes()
-    for at in (0, len(data) // 2, len(data) - 1):
-        (with_errors / ERRORS).write_bytes(data[:at])
-        assert found(with_errors).keys() == {ERRORS}
-    middle = len(data) // 3
-    (with_errors / ERRORS).write_bytes(data[:middle] + bytes(400) + data[middle + 400 :])
-    assert found(with_errors).keys() == {ERRORS}
-
-
-@pytest.mark.parametrize("name", ["LICENSE", "survey/LICENSE", "bibliography/LICENSE"])
-def test_another_licence_is_seen(small, name):
-    (small / name).write_text("All rights reserved.\n")
-    assert found(small).keys() == {name}
-
-
-def test_the_licence_of_another_holder_and_year_is_the_same(small):
-    text = (small / "LICENSE").read_text("utf-8")
-    lines = [
-        "Copyright (c) 2031 Somebody Else" if line.startswith("Copyright (c)") else line
-        for line in text.splitlines()
-    ]
-    assert "\n".join(lines) != text.strip()
-    (small / "LICENSE").write_text("\n".join(lines))
-    assert found(small) == {}
-
-
-GPL = {"name": "GPL-3.0", "path": "https://www.gnu.org/licenses/gpl-3.0", "title": "GPL"}
-
-
-@pytest.mark.parametrize(
-    "edit",
-    [
-        lambda package: package.__setitem__("licenses", [GPL]),
-        lambda package: package["resources"][0].__setitem__("licenses", [GPL]),
-        lambda package: package["resources"][0].pop("licenses"),
-    ],
-)
-def test_a_descriptor_of_another_licence_is_seen(small, edit):
-    change(small, edit)
-    assert any(
-        name == DESCRIPTOR and "expected" in text and "MIT" in text for name, text in verify(small)
-    )
-
-
-def test_a_crate_of_another_licence_is_seen(small):
-    def edit(crate):
-        for entity in crate["@graph"]:
-            if entity["@id"] == "survey/LICENSE":
-                entity["license"] = {"@id": "https://spdx.org/licenses/MIT"}
-
-    change(small, edit, CRATE)
-    ((name, text),) = verify(small)
-    assert name == CRATE
-    assert text.endswith("expected CC-BY-4.0")
 
 
 @pytest.mark.parametrize("version", ["../../x", "", None, "1 2", "0.1.0\x1b[2J"])

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import datetime as dt
 import json
-import sqlite3
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from frictionless import FrictionlessException, Resource, system
@@ -16,10 +12,7 @@ from frictionless import FrictionlessException, Resource, system
 from api.deposit import verification
 from api.deposit.bundle import DepositError, build
 from api.deposit.crate import CRATE
-from api.deposit.database import DATABASE, write_database
 from api.deposit.package import DESCRIPTOR
-from api.deposit.packing import PackingError, pack
-from api.deposit.typed_tables import TypedTable
 from api.deposit.verification import verify
 from files.checksums import CHECKSUMS, write_checksums
 from tests.api.deposit import small_bundle
@@ -40,27 +33,7 @@ def without(bundle: Path, name: str) -> None:
     agree(bundle)  # type: ignore[no-untyped-call]
 
 
-def test_a_full_disk_is_an_error_of_the_system_that_names_the_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    connect = sqlite3.connect
-
-    def small_disk(where: Any, **options: Any) -> sqlite3.Connection:
-        base: sqlite3.Connection = connect(where, **options)
-        if where != ":memory:":
-            base.execute("PRAGMA max_page_count = 2")
-        return base
-
-    monkeypatch.setattr(sqlite3, "connect", small_disk)
-    fields = [{"name": "name", "type": "string", "description": "A name."}]
-    resource = {"name": "one", "title": "One", "description": "", "schema": {"fields": fields}}
-    table = TypedTable(resource, {"name": ["x" * 100_000]})
-    with pytest.raises(OSError, match="No space left on device") as raised:
-        write_database([table], tmp_path / DATABASE)
-    assert raised.value.filename == str(tmp_path / DATABASE)
-
-
-@pytest.mark.parametrize("name", ["LICENSE", "survey/LICENSE", "bibliography/LICENSE"])
+@pytest.mark.parametrize("name", ["LICENSE", "survey/LICENSE"])
 def test_a_bundle_without_its_terms_is_told_which_are_missing(small: Path, name: str) -> None:
     without(small, name)
     assert verify(small) == [(name, "missing; a bundle goes out with its terms")]
@@ -130,20 +103,3 @@ def test_a_file_beside_a_bundle_that_is_not_its_zip_is_not_replaced(
     with pytest.raises(DepositError, match=r"out\.zip: not the zip of an earlier bundle"):
         build(tmp_path / "out")
     assert path.read_bytes() == content
-
-
-def test_a_zip_of_something_else_is_not_replaced(tmp_path: Path) -> None:
-    path = tmp_path / "out.zip"
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("sun-sensor-atlas-0.1.0/README.md", "")
-        archive.writestr("thesis.txt", "")
-    with pytest.raises(DepositError, match=r"out\.zip: not the zip of an earlier bundle"):
-        build(tmp_path / "out")
-
-
-def test_a_bundle_too_large_for_a_zip_is_refused(
-    small: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(zipfile, "ZIP64_LIMIT", 100)
-    with pytest.raises(PackingError, match="too large for a zip; expected less than 4 GiB"):
-        pack(small, small.with_name("large.zip"), "top", dt.date(2026, 11, 21))
