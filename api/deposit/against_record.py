@@ -19,10 +19,9 @@ from api.deposit.code_archive import write_code_as_in
 from api.deposit.database import DATABASE
 from api.deposit.deposit_tables import measured_tables, read_descriptor
 from api.deposit.forms import FOLDER as FORMS
-from api.deposit.forms import unlike, write_other_forms
+from api.deposit.forms import Problem, unlike, write_other_forms
 from api.deposit.frames import FOLDER, sample
 from api.deposit.package import DESCRIPTOR
-from api.deposit.verification import Problem
 from api.metadata.identity import identity
 from benchmark import datasets
 from benchmark.contract import SPLITS

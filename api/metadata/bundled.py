@@ -7,7 +7,7 @@ are read from Parquet, whose columns have types; paths start at the document's f
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -41,7 +41,14 @@ def documents(bundle: Path, who: Identity, descriptor: Mapping[str, Any]) -> dic
     who : made it
     descriptor : its datapackage.json
     """
-    tables = [r for r in descriptor["resources"] if r.get("type") == "table"]
+    tables = {
+        folder: [
+            one
+            for one in descriptor["resources"]
+            if one.get("type") == "table" and one["path"].startswith(f"{folder}/")
+        ]
+        for folder in ("benchmark", "survey")
+    }
     facts = DatasetDescription(
         f"{who.title}: facts of the survey",
         "What a survey of sun sensors says of each mapped study, with the evidence of every value.",
@@ -51,15 +58,13 @@ def documents(bundle: Path, who: Identity, descriptor: Mapping[str, Any]) -> dic
         "CC-BY-4.0",
     )
     found = {
-        RECORD: _of_tables(bundle, of_record(who, None), who, _within(tables, "benchmark")),
-        SURVEY: _of_tables(bundle, facts, who, _within(tables, "survey")),
+        RECORD: _of_tables(bundle, of_record(who, None), who, tables["benchmark"]),
+        SURVEY: _of_tables(bundle, facts, who, tables["survey"]),
     }
-    found |= {name: _of_dataset(bundle, name, who) for name in _datasets(bundle)}
+    found |= {
+        name: _of_dataset(bundle, name, who) for name in datasets.names() if _has(bundle, name)
+    }
     return {f"{FOLDER}/{name}.json": document for name, document in found.items()}
-
-
-def _within(resources: Iterable[Mapping[str, Any]], folder: str) -> list[Mapping[str, Any]]:
-    return [r for r in resources if r["path"].startswith(f"{folder}/")]
 
 
 def _of_tables(
@@ -77,12 +82,8 @@ def _of_tables(
     return croissant(what, who, files, tables)
 
 
-def _datasets(bundle: Path) -> list[str]:
-    """Return the data sets of which the bundle has errors or samples."""
-    known = set(datasets.names())
-    of_errors = {name for name in known if (bundle / _errors(name)).is_file()}
-    of_samples = {path.name for path in (bundle / _FRAMES).glob("*")} & known
-    return sorted(of_errors | of_samples)
+def _has(bundle: Path, name: str) -> bool:
+    return (bundle / _errors(name)).is_file() or (bundle / _FRAMES / name).is_dir()
 
 
 def _errors(name: str, *, directions: bool = False) -> str:

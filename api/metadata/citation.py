@@ -67,6 +67,20 @@ class Author:
         """The name as indices sort it."""
         return self.name or ", ".join(part for part in (self.family, self.given) if part)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return the author as schema.org describes a person or an organisation."""
+        if self.name:
+            return {"@type": "Organization", "name": self.name}
+        affiliation = {"@type": "Organization", "name": self.affiliation}
+        return {
+            "@type": "Person",
+            **({"@id": f"https://orcid.org/{self.orcid}"} if self.orcid else {}),
+            "name": self.title,
+            "givenName": self.given,
+            "familyName": self.family,
+            **({"affiliation": affiliation} if self.affiliation else {}),
+        }
+
 
 def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     """Read the authors of a CITATION.cff (Citation File Format 1.2.0).
@@ -105,19 +119,14 @@ def unfilled(listed: Sequence[Author], address: str | None) -> list[str]:
     listed : its authors
     address : its repository, or None
     """
-    return [
-        *(f"authors: {said}" for said in author_problems(listed)),
-        *(f"repository-code: {said}" for said in repository_problems(address)),
-    ]
-
-
-def repository_problems(address: str | None) -> list[str]:
-    """Say why an address is not that of a public repository; empty where it may be."""
+    found = [f"authors: {said}" for said in author_problems(listed)]
     if address is None:
-        return ["missing; expected the address of the public repository"]
+        expected = "missing; expected the address of the public repository"
+        return [*found, f"repository-code: {expected}"]
     if not _REPOSITORY.fullmatch(address) or _NOBODY.match(address):
-        return [f"{address!r} is no address of a public repository (https://...)"]
-    return []
+        said = f"{address!r} is no address of a public repository (https://...)"
+        return [*found, f"repository-code: {said}"]
+    return found
 
 
 def persistent(text: str) -> str | None:
@@ -144,14 +153,19 @@ def of_dataset(text: str, record: str | None = None, editions: Sequence[Edition]
     editions : of the studies, each to be named by its version
     """
     document = {**yaml.safe_load(text), "type": "dataset"}
-    if record is not None:
-        said = "SHA-256 of the manifest of the published results, as the leaderboard shows it"
-        named = {"type": "other", "value": f"sha256:{record}", "description": said}
-        document["identifiers"] = [*document.get("identifiers", ()), named]
-    for one in editions:
-        said = f"{one.title} ({one.studies}): version of the edition `{one.name}`"
-        named = {"type": "other", "value": f"{one.name}:{one.version}", "description": said}
-        document["identifiers"] = [*document.get("identifiers", ()), named]
+    said = "SHA-256 of the manifest of the published results, as the leaderboard shows it"
+    named = [(f"sha256:{record}", said)] if record is not None else []
+    named += [
+        (
+            f"{one.name}:{one.version}",
+            f"{one.title} ({one.studies}): version of the edition `{one.name}`",
+        )
+        for one in editions
+    ]
+    document["identifiers"] = [
+        *document.get("identifiers", ()),
+        *({"type": "other", "value": value, "description": said} for value, said in named),
+    ]
     return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True))
 
 

@@ -6,13 +6,12 @@ CITATION.cff is the one file a person fills in; `make docs` writes codemeta.json
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import yaml
 
-from api.metadata.citation import Author, authors, persistent
+from api.metadata.citation import authors, persistent
 
 CONTEXT = "https://w3id.org/codemeta/3.0"
 NAME = "codemeta.json"
@@ -40,11 +39,11 @@ def codemeta(citation: str) -> dict[str, Any]:
         "@type": "SoftwareSourceCode",
         "identifier": persistent(citation),
         "name": cited.get("title"),
-        "description": _line(cited.get("abstract")),
+        "description": " ".join(str(cited.get("abstract") or "").split()),
         "version": _text(cited.get("version")),
         "datePublished": _text(cited.get("date-released")),
         "license": [f"{_SPDX}{licence}" for licence in licences],
-        "author": [_author(one) for one in people],
+        "author": [one.to_dict() for one in people],
         "keywords": list(cited.get("keywords", ())),
         "codeRepository": cited.get("repository-code"),
         "url": cited.get("url"),
@@ -57,23 +56,6 @@ def codemeta(citation: str) -> dict[str, Any]:
 def codemeta_text(citation: str) -> str:
     """Return `codemeta` as the file has it."""
     return json.dumps(codemeta(citation), indent=2, ensure_ascii=False) + "\n"
-
-
-def _author(author: Author) -> dict[str, Any]:
-    if author.name:
-        return {"@type": "Organization", "name": author.name}
-    affiliation = {"@type": "Organization", "name": author.affiliation}
-    return {
-        **({"@id": f"https://orcid.org/{author.orcid}"} if author.orcid else {}),
-        "@type": "Person",
-        "givenName": author.given,
-        "familyName": author.family,
-        **({"affiliation": affiliation} if author.affiliation else {}),
-    }
-
-
-def _line(text: Any) -> str:
-    return re.sub(r"\s+", " ", str(text or "")).strip()
 
 
 def _text(value: Any) -> str | None:

@@ -6,9 +6,11 @@ builder describes files that the service serves and files that lie in the deposi
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
+from pathlib import Path
 from typing import Any
 
 from api.metadata.citation import Author
@@ -28,44 +30,7 @@ PARQUET = ("application/x-parquet", "application/vnd.apache.parquet")
 """What Croissant calls Parquet, and its registered media type."""
 
 #: The context that the specification asks for, word by word.
-CONTEXT: Mapping[str, Any] = {
-    "@language": "en",
-    "@vocab": "https://schema.org/",
-    "citeAs": "cr:citeAs",
-    "column": "cr:column",
-    "conformsTo": "dct:conformsTo",
-    "cr": "http://mlcommons.org/croissant/",
-    "rai": "http://mlcommons.org/croissant/RAI/",
-    "data": {"@id": "cr:data", "@type": "@json"},
-    "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
-    "dct": "http://purl.org/dc/terms/",
-    "equivalentProperty": "cr:equivalentProperty",
-    "examples": {"@id": "cr:examples", "@type": "@json"},
-    "extract": "cr:extract",
-    "field": "cr:field",
-    "fileProperty": "cr:fileProperty",
-    "fileObject": "cr:fileObject",
-    "fileSet": "cr:fileSet",
-    "format": "cr:format",
-    "includes": "cr:includes",
-    "isLiveDataset": "cr:isLiveDataset",
-    "jsonPath": "cr:jsonPath",
-    "key": "cr:key",
-    "md5": "cr:md5",
-    "parentField": "cr:parentField",
-    "path": "cr:path",
-    "recordSet": "cr:recordSet",
-    "references": "cr:references",
-    "regex": "cr:regex",
-    "repeated": "cr:repeated",
-    "replace": "cr:replace",
-    "samplingRate": "cr:samplingRate",
-    "sc": "https://schema.org/",
-    "separator": "cr:separator",
-    "source": "cr:source",
-    "subField": "cr:subField",
-    "transform": "cr:transform",
-}
+CONTEXT = json.loads(Path(__file__).with_name("croissant_context.json").read_text("utf-8"))
 
 Column = tuple[str, str, str]
 """Name, type as a Table Schema calls it, and meaning."""
@@ -189,20 +154,7 @@ def croissant(
     who : made it
     files : of the data set
     tables : in the files
-
-    Raises
-    ------
-    ValueError
-        Where a table is of no file, or two things have one name.
     """
-    names = [file.name for file in files]
-    of_none = [table.name for table in tables if table.file not in names]
-    if of_none:
-        raise ValueError(f"table {of_none[0]}: expected a file among {', '.join(names)}")
-    every = [*names, *(table.name for table in tables)]
-    twice = sorted({name for name in every if every.count(name) > 1})
-    if twice:
-        raise ValueError(f"{twice[0]}: two files or tables of that name")
     return {
         "@context": dict(CONTEXT),
         "@type": "sc:Dataset",

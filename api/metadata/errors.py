@@ -12,31 +12,15 @@ from benchmark.results.samples import (
     COLUMNS,
     CONDITION,
     DIRECTION_COLUMNS,
-    OUTCOMES,
     datasets,
     path_of,
 )
 
 FOLDER = "benchmark"
 
-Fields = tuple[dict[str, Any], ...]
-
-
-def _fields(columns: Sequence[str], **constraints: Mapping[str, Any]) -> Fields:
-    """Describe columns of the files; only numbers may be NaN."""
-    required = [name for name in columns if name not in ("error_deg", "bound_deg")]
-    made = fields(SampleError, columns, required)
-    return tuple(
-        {**one, "constraints": {**one.get("constraints", {}), **constraints.get(one["name"], {})}}
-        for one in made
-    )
-
-
 #: Columns of the errors and of the directions, in words.
-ERRORS: Fields = _fields(
-    tuple(COLUMNS), error_deg={"minimum": 0, "maximum": 180}, outcome={"enum": list(OUTCOMES)}
-)
-DIRECTIONS: Fields = _fields(tuple(DIRECTION_COLUMNS))
+ERRORS = fields(SampleError, tuple(COLUMNS))
+DIRECTIONS = fields(SampleError, tuple(DIRECTION_COLUMNS))
 
 
 def write_errors(bundle: Path, published: Path) -> list[dict[str, str]]:
@@ -49,47 +33,28 @@ def write_errors(bundle: Path, published: Path) -> list[dict[str, str]]:
     """
     rows = []
     for name in datasets(published):
-        for described in (_errors(name), _directions(name)):
-            target = bundle / FOLDER / described["path"]
+        described = (
+            {
+                "name": f"errors-{name}",
+                "title": f"{name}: errors sample by sample",
+                "description": "Error of every pipeline on every test sample, condition "
+                f"{CONDITION}. {_said(ERRORS)}",
+                "path": path_of(name),
+            },
+            {
+                "name": f"directions-{name}",
+                "title": f"{name}: directions of the samples",
+                "description": f"The test samples that errors-{name} is of. {_said(DIRECTIONS)}",
+                "path": path_of(name, directions=True),
+            },
+        )
+        for one in described:
+            target = bundle / FOLDER / one["path"]
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes((published / described["path"]).read_bytes())
-            rows.append({**described, "path": f"{FOLDER}/{described['path']}"})
+            target.write_bytes((published / one["path"]).read_bytes())
+            rows.append({**one, "path": f"{FOLDER}/{one['path']}"})
     return rows
 
 
-def _errors(name: str) -> dict[str, str]:
-    return {
-        "name": f"errors-{name}",
-        "title": f"{name}: errors sample by sample",
-        "description": "Error of every pipeline on every test sample, condition "
-        f"{CONDITION}. {_said(ERRORS)}",
-        "path": path_of(name),
-    }
-
-
-def _directions(name: str) -> dict[str, str]:
-    return {
-        "name": f"directions-{name}",
-        "title": f"{name}: directions of the samples",
-        "description": f"The test samples that errors-{name} is of. {_said(DIRECTIONS)}",
-        "path": path_of(name, directions=True),
-    }
-
-
-def _said(fields: Fields) -> str:
-    return " ".join(f"{field['name']}: {field['description']}" for field in fields)
-
-
-#: By kind of file: its path, with DATASET in place of a name, its title and its schema.
-KINDS: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {
-    "errors": (
-        f"{FOLDER}/{path_of('DATASET')}",
-        "Errors sample by sample, a file each data set",
-        {"fields": ERRORS, "primaryKey": ("extractor", "model", "unit", "sample")},
-    ),
-    "directions": (
-        f"{FOLDER}/{path_of('DATASET', directions=True)}",
-        "Directions of the samples, a file each data set",
-        {"fields": DIRECTIONS, "primaryKey": ("sample",)},
-    ),
-}
+def _said(described: Sequence[Mapping[str, Any]]) -> str:
+    return " ".join(f"{field['name']}: {field['description']}" for field in described)

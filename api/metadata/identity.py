@@ -15,12 +15,14 @@ from functools import cache
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 
+import yaml
+
 from api.metadata.citation import Author
 from api.metadata.citation import authors as authors_of
 
 DISTRIBUTION = "sun-sensor-atlas"
 ROOT = Path(__file__).resolve().parents[2]
-_DATE = re.compile(r'^date-released:\s*"?(\d{4}-\d{2}-\d{2})"?\s*$', re.MULTILINE)
+_DATE = re.compile(r"^date-released:\s*[\"']?(\d{4}-\d{2}-\d{2})[\"']?\s*$", re.MULTILINE)
 
 
 class MissingFileError(FileNotFoundError):
@@ -84,22 +86,18 @@ def version() -> str:
 
 def generated_citation(number: str, summary: str, authors: tuple[str, ...], released: date) -> str:
     """Write a CITATION.cff from the metadata, for an installation without the file."""
-    names = "".join(f'  - name: "{_quote(name)}"\n' for name in authors)
-    return (
-        "cff-version: 1.2.0\n"
-        "message: If you use the dataset, the benchmark or the code, please cite it as below.\n"
-        "type: software\n"
-        "title: Sun Sensor Atlas\n"
-        f'abstract: "{_quote(summary)}"\n'
-        f"authors:\n{names}"
-        f'version: "{_quote(number)}"\n'
-        f'date-released: "{released.isoformat()}"\n'
-        "license:\n  - MIT\n  - CC-BY-4.0\n"
-    )
-
-
-def _quote(text: str) -> str:
-    return text.replace("\\", "\\\\").replace('"', '\\"')
+    document = {
+        "cff-version": "1.2.0",
+        "message": "If you use the dataset, the benchmark or the code, please cite it as below.",
+        "type": "software",
+        "title": "Sun Sensor Atlas",
+        "abstract": summary,
+        "authors": [{"name": name} for name in authors],
+        "version": number,
+        "date-released": released.isoformat(),
+        "license": ["MIT", "CC-BY-4.0"],
+    }
+    return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True))
 
 
 def _checkout() -> bool:

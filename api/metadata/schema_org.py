@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from api.metadata.citation import Author, persistent
+from api.metadata.citation import persistent
 from api.metadata.identity import Identity
 from api.metadata.served import SUBJECTS
 from api.metadata.signposting import LandingPage
@@ -161,7 +161,7 @@ def _work(who: Identity) -> Entity:
         "url": "/",
         "version": who.version,
         "datePublished": who.released.isoformat(),
-        "creator": [_author(author) for author in who.authors],
+        "creator": [author.to_dict() for author in who.authors],
         "isAccessibleForFree": True,
         **({"sameAs": doi} if doi else {}),
     }
@@ -171,23 +171,9 @@ def _terms(who: Identity, landing: LandingPage) -> Entity:
     return {
         "url": landing.path,
         **({"license": LICENCES[landing.licence]} if landing.licence else {}),
-        "creator": [_author(author) for author in who.authors],
+        "creator": [author.to_dict() for author in who.authors],
         "datePublished": who.released.isoformat(),
         "isAccessibleForFree": True,
-    }
-
-
-def _author(author: Author) -> Entity:
-    if author.name:
-        return {"@type": "Organization", "name": author.name}
-    affiliation = {"@type": "Organization", "name": author.affiliation}
-    return {
-        "@type": "Person",
-        **({"@id": f"https://orcid.org/{author.orcid}"} if author.orcid else {}),
-        "name": author.title,
-        "givenName": author.given,
-        "familyName": author.family,
-        **({"affiliation": affiliation} if author.affiliation else {}),
     }
 
 
