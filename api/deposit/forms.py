@@ -90,14 +90,7 @@ def write_other_forms(bundle: Path, descriptor: Mapping[str, Any], out: Path | N
 
 
 def of_forms(bundle: Path, package: Mapping[str, Any], listed: Mapping[str, str]) -> list[Problem]:
-    """Say where Parquet and SQLite hold other than the tables: (file, what is wrong with it).
-
-    Parameters
-    ----------
-    bundle : its directory, whose tables are valid
-    package : its descriptor
-    listed : checksums by path
-    """
+    """Say where Parquet and SQLite hold other than the tables: (file, what is wrong with it)."""
     with temporary_directory() as made:
         try:
             write_other_forms(bundle, package, made)

@@ -56,18 +56,9 @@ def blocks(page: str, text: str) -> Iterator[tuple[str, Example, bool]]:
 
 
 def rerun(page: str, text: str, directory: Path) -> str:
-    """Run a page's blocks; return its text with what they print now.
+    """Run a page's blocks in a directory; return its text with what they print now.
 
-    Parameters
-    ----------
-    page : its name, for messages
-    text : Markdown
-    directory : that blocks run in, and may write to
-
-    Raises
-    ------
-    BlockError
-        Where a block fails, or prints what no block behind it shows.
+    BlockError where a block fails, or prints what no block behind it shows.
     """
     new, at, behind = "", 0, 0
     printed: str | None = None  # by the block of Python just run
@@ -78,8 +69,10 @@ def rerun(page: str, text: str, directory: Path) -> str:
             shows = word == "text" and not text[behind : example.start].strip()
             behind = example.end
             try:
-                if printed is not None:
-                    _require(printed, shows=shows)
+                if printed is not None and shows != bool(printed):
+                    raise BlockError(  # noqa: TRY301 - with the line of the block, below
+                        _UNSHOWN if printed else "the block before prints nothing"
+                    )
                 if printed:
                     new, at = new + text[at:start] + printed, end
                 printed = None
@@ -96,12 +89,6 @@ def rerun(page: str, text: str, directory: Path) -> str:
     if printed:
         raise BlockError(f"{page}: {_UNSHOWN}")
     return new + text[at:]
-
-
-def _require(printed: str, *, shows: bool) -> None:
-    """Refuse what Python prints and no block shows, and a block that shows what is not printed."""
-    if shows != bool(printed):
-        raise BlockError(_UNSHOWN if printed else "the block before prints nothing")
 
 
 def _python(example: Example) -> str:

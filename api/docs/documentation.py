@@ -57,16 +57,7 @@ class DocumentationError(ValueError):
 def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
     """Return a page with its generated parts renewed.
 
-    Parameters
-    ----------
-    page : its name, for messages
-    text : as it is
-    parts : what makes each part, by name
-
-    Raises
-    ------
-    DocumentationError
-        Where a part is missing, unknown, or there twice.
+    DocumentationError where a part is missing, unknown, or there twice.
     """
     found = [match["name"] for match in _PART.finditer(text)]
     if sorted(found) != sorted(parts):
@@ -81,13 +72,7 @@ def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
 
 
 def regenerate(root: Path = ROOT, *, write: bool = True) -> list[str]:
-    """Renew every page and file; return the names of those that were behind.
-
-    Parameters
-    ----------
-    root : of the checkout
-    write : write those that were behind
-    """
+    """Renew every page and file of a checkout; return the names of those that were behind."""
     made: dict[str, Make] = {page: partial(_renewed, page, root) for page in PAGES}
     made |= {page: partial(_rerun, page, root) for page in RUN}
     made |= WHOLE

@@ -59,13 +59,7 @@ def link_names(document: nodes.document) -> None:
 
 
 def finish_page(page: Path, site: Path) -> None:
-    """Move scripts out of a page, let the keyboard scroll its code, give captions their level.
-
-    Parameters
-    ----------
-    page : HTML, changed in place
-    site : whose `_static` takes the scripts
-    """
+    """Move scripts of a page to the site's files, let the keyboard scroll its code."""
     up = "../" * (len(page.relative_to(site).parts) - 1)
 
     def apart(match: re.Match[str]) -> str:

@@ -85,11 +85,6 @@ class Author:
 def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     """Read the authors of a CITATION.cff (Citation File Format 1.2.0).
 
-    Parameters
-    ----------
-    text : of the file
-    where : its name, for messages
-
     Raises
     ------
     CitationError
@@ -112,13 +107,7 @@ def repository(text: str) -> str | None:
 
 
 def unfilled(listed: Sequence[Author], address: str | None) -> list[str]:
-    """Say which fields of a CITATION.cff an archive demands and does not find; empty where none.
-
-    Parameters
-    ----------
-    listed : its authors
-    address : its repository, or None
-    """
+    """Say which fields of a CITATION.cff an archive demands and does not find; empty where none."""
     found = [f"authors: {said}" for said in author_problems(listed)]
     if address is None:
         expected = "missing; expected the address of the public repository"

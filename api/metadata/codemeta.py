@@ -21,10 +21,6 @@ _SPDX = "https://spdx.org/licenses/"
 def codemeta(citation: str) -> dict[str, Any]:
     """Return the metadata of the software.
 
-    Parameters
-    ----------
-    citation : text of CITATION.cff
-
     Raises
     ------
     CitationError

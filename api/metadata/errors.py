@@ -24,13 +24,7 @@ DIRECTIONS = fields(SampleError, tuple(DIRECTION_COLUMNS))
 
 
 def write_errors(bundle: Path, published: Path) -> list[dict[str, str]]:
-    """Copy the errors of every data set and its directions; return a row for each file.
-
-    Parameters
-    ----------
-    bundle : its directory
-    published : directory of the published results
-    """
+    """Copy the errors of every data set and its directions; return a row for each file."""
     rows = []
     for name in datasets(published):
         described = (

@@ -15,12 +15,6 @@ def fields(
 ) -> list[dict[str, Any]]:
     """Describe columns as fields of a Table Schema.
 
-    Parameters
-    ----------
-    model : of a row
-    columns : in order
-    required : of which no cell may be empty
-
     Raises
     ------
     ValueError

@@ -23,13 +23,7 @@ SOFTWARE = "/#software"
 
 
 def atlas(who: Identity, datasets: Iterable[str]) -> Entity:
-    """Return catalogue and software, which the home page is about.
-
-    Parameters
-    ----------
-    who : the project
-    datasets : names of the data sets
-    """
+    """Return catalogue and software, which the home page is about."""
     catalogue = {
         "@type": "DataCatalog",
         "@id": CATALOGUE,

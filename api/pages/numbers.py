@@ -26,12 +26,7 @@ def degrees(value: float | None) -> str:
 
 
 def own_error(row: Mapping[str, Any]) -> Markup:
-    """Return the own error of a row, marked so that a reader of pages finds it.
-
-    Parameters
-    ----------
-    row : with `own_error_deg`, and `dataset`, `extractor` and `model`
-    """
+    """Return the own error of a row, marked so that a reader of pages finds it."""
     if row["own_error_deg"] is None:
         return Markup.escape(NOTHING)
     of = "|".join(row[name] for name in ("dataset", "extractor", "model"))

@@ -60,13 +60,7 @@ def _abbreviations() -> re.Pattern[str]:
 
 
 def term(name: str, text: str | None = None) -> Markup:
-    """Return a term with its meaning as a tip, and a link to its entry; unknown names stand bare.
-
-    Parameters
-    ----------
-    name : of the glossary
-    text : what is written, the name by default
-    """
+    """Return a term with its meaning as a tip, and a link to its entry; others stand bare."""
     known = glossary().get(name)
     if known is None:
         return Markup.escape(text or name)

@@ -20,12 +20,6 @@ COLUMNS = ("set", "model", "rms_deg", "standard_error_deg", "worst_run_deg", "un
 def measured(real: RealSet, directory: Path) -> list[dict[str, Any]]:
     """Return the score of every model that answers on a set's files, the smallest error first.
 
-    Parameters
-    ----------
-    real : RealSet
-    directory : Path
-        Where `api.real.fetching.fetch` has written it.
-
     Returns
     -------
     list of dict

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-from pathlib import Path
-from typing import Any
-
 import pytest
 from typer.testing import CliRunner
 
-import survey_data
 from api.cli.command_line import app
 from api.figures.catalogue import MATRIX
 from registry.studies import facts
@@ -137,64 +131,3 @@ def test_the_command_line_takes_an_edition(command: list[str]) -> None:
 
     assert not named(keys())
     assert named(keys("--edition", "all"))
-
-
-def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_path: Path) -> None:
-    """The whole way of a reader of the guide, in a repository of the tables."""
-    ours = tmp_path / "tables"
-
-    def git(*words: str) -> str:
-        command = ["git", "-C", str(ours), "-c", "user.name=a", "-c", "user.email=a@b", *words]
-        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
-
-    def said(*words: str, code: int = 0) -> Any:
-        shown = CliRunner().invoke(app, ["survey", *words, "--data", str(ours)])
-        assert shown.exit_code == code, shown.output
-        return shown
-
-    for name in (*survey_data.facts_manifest.names(), "checksums-sha256.txt"):
-        target = ours / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes((Path(survey_data.__file__).parent / name).read_bytes())
-    git("init", "-q")
-    git("add", ".")
-    git("commit", "-qm", "tables")
-    template = tmp_path / "doe.toml"
-    said("add", "--init", "Doe2026", str(template))
-    text = template.read_text("utf-8")
-    for column, value in (
-        ("title", "T"),
-        ("type", "preprint"),
-        ("url", "https://arxiv.org/abs/2030.00001"),
-    ):
-        text = text.replace(f'{column} = ""', f'{column} = "{value}"')
-    template.write_text(text, "utf-8")
-    two = tmp_path / "two.toml"
-    two.write_text(text.replace('"preprint"', '"preprnt"'), "utf-8")
-    lines = said("add", str(two), code=1).stderr.splitlines()
-    assert [line.partition(":")[0] for line in lines] == ["sunatlas"] * 2  # a line a fault
-    refused = said("add", str(template), "--apply", code=1)
-    line = text[: text.index("identity = ")].count("\n") + 1
-    assert refused.stderr.startswith(f"sunatlas: doe.toml, line {line}: identity: ")
-    assert refused.stderr.count("\n") == 1
-    template.write_text(text.replace('identity = ""', 'identity = "recalled"'), "utf-8")
-    preview = json.loads(said("add", str(template), "--format", "json").stdout)
-    assert preview["state"] == "none"  # every cell is unknown
-    assert git("status", "--porcelain") == ""
-    said("add", str(template), "--apply")
-    assert "extension/studies.csv" in git("status", "--porcelain")
-    facts = (
-        "--name",
-        "Jane Doe",
-        "--confirms",
-        "all",
-        "--source",
-        "letter",
-        "--date",
-        "2026-01-02",
-    )
-    said("verify", "Doe2026", *facts, "--apply")
-    said("check")
-    said("remove", "Doe2026", "--apply")
-    assert git("status", "--porcelain") == ""
-    said("remove", "Chang2008", "--apply", code=1)

@@ -5,20 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 from urllib.parse import quote, urlencode
 
 import pytest
-from fastapi import APIRouter, FastAPI
 from typer.testing import CliRunner
 
 from api.cli import command_line
 from api.cli.command_line import COMMANDS, app
-from api.server import handlers
-from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import TableOnly
-from api.web.middleware import EveryResponse
 from files.csv_writing import escape_formulas
 from registry.taxonomy import NONE_STATED
 from tests.api.conftest import Client
@@ -94,38 +89,9 @@ def test_the_survey_s_none_is_told_apart_from_what_is_unknown(atlas: Client) -> 
     assert {tables[key]["detector"] for key in unknown} == {""}
 
 
-ROWS = [{"name": '=HYPERLINK("http://x")', "value": -1.5}, {"name": "-", "value": 2}]
-
-
-@pytest.fixture
-def small() -> Iterator[Client]:
-    """A service of one table whose cells are formulas."""
-    router = APIRouter(route_class=AnswerRoute, default_response_class=Answer)
-
-    @router.get("/v1/made")
-    async def made(query: TableOnly) -> Answer:
-        return Answer({"rows": ROWS}, ("name", "value"), lambda: ROWS)
-
-    service = FastAPI()
-    service.add_middleware(EveryResponse)
-    service.include_router(router)
-    handlers.install(service, list(router.routes))
-    client = Client(service)
-    yield client
-    client.close()
-
-
-def test_a_table_is_for_spreadsheets_where_it_is_asked_to_be(small: Client) -> None:
-    plain = small.get("/v1/made?format=csv")
-    safe = small.get("/v1/made?format=csv&safe=true")
-    assert plain.text == 'name,value\n"=HYPERLINK(""http://x"")",-1.5\n-,2\n'
-    assert safe.text == 'name,value\n"\'=HYPERLINK(""http://x"")",-1.5\n\'-,2\n'
-    assert safe.headers["etag"] != plain.headers["etag"]
-    assert small.get("/v1/made?safe=true", accept="text/csv").text == safe.text
-    assert small.get("/v1/made?safe=false&format=csv").text == plain.text
-    assert small.get("/v1/made?safe=true").json() == {"rows": ROWS}
+def test_safe_is_true_or_false(atlas: Client) -> None:
     for wrong in ("safe=maybe", "safe=", "safe=true&safe=false"):
-        assert small.get(f"/v1/made?format=csv&{wrong}").status_code == 422, wrong
+        assert atlas.get(f"/v1/taxonomy?format=csv&{wrong}").status_code == 422, wrong
 
 
 def test_every_table_has_a_form_for_spreadsheets_and_leads_there(atlas: Client) -> None:

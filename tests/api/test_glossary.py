@@ -19,12 +19,6 @@ def test_every_value_of_the_taxonomy_has_its_name_in_full():
     assert terms["detector", "CMOS"].name == "Complementary metal-oxide semiconductor imager"
 
 
-def test_none_is_never_bare():
-    for one in glossary():
-        if one.term == "None":
-            assert "none" in one.meaning
-
-
 def test_a_word_of_a_kind_has_one_meaning():
     counted = Counter((one.kind, one.term) for one in glossary())
     assert {key for key, count in counted.items() if count > 1} == set()

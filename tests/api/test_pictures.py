@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 
 import pytest
@@ -11,23 +10,6 @@ from api import previews
 from api.previews import Pictures, place
 from benchmark import datasets
 from benchmark.datasets.preview import preview_png
-
-
-@pytest.fixture
-def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What was drawn beside, each in a moment; a store that is a file takes nothing."""
-    names: list[str] = []
-
-    def draw(directory: Path, name: str) -> None:
-        names.append(name)
-        if not directory.is_file():
-            path = place(directory, name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(name.encode())
-
-    monkeypatch.setattr(previews, "_drawn_beside", draw)
-    monkeypatch.setattr(previews, "published_preview", lambda _: tmp_path / "of other code")
-    return names
 
 
 def test_every_data_set_s_picture_is_published_as_the_code_is_now() -> None:
@@ -70,17 +52,3 @@ def test_another_process_draws_what_the_data_set_draws(
     name = datasets.names()[-1]
     assert Pictures(tmp_path).png(name) == preview_png(datasets.get(name))
     assert place(tmp_path, name).is_file()
-
-
-def test_many_who_ask_at_once_have_it_drawn_once(tmp_path: Path, drawn: list[str]) -> None:
-    shared = Pictures(tmp_path)
-    found: list[bytes] = []
-    threads = [threading.Thread(target=lambda: found.append(shared.png("a"))) for _ in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert found == [b"a"] * 8
-    assert drawn == ["a"]
-    assert Pictures(tmp_path).png("a") == b"a"
-    assert drawn == ["a"]

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
-import socket
-import threading
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-import uvicorn
 from playwright.sync_api import Browser, expect, sync_playwright
 
-from tests.api.browser.delivery import InPieces
 from tests.api.browser.visiting import NARROW, PATIENCE_MS, WIDE, Visit
 from tests.api.conftest import Client
 
@@ -23,21 +18,9 @@ QUIET = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-backgro
 
 
 @pytest.fixture(scope="module")
-def address(atlas: Client) -> Iterator[str]:
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        options = {"log_level": "warning", "ws": "none", "lifespan": "off"}
-        server = uvicorn.Server(uvicorn.Config(InPieces(atlas.app), **options))
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-        thread.start()
-        deadline = time.monotonic() + PATIENCE_MS / 1e3
-        while not server.started:
-            assert thread.is_alive(), "the service did not start"
-            assert time.monotonic() < deadline, "the service did not start"
-            time.sleep(0.05)
-        yield f"http://127.0.0.1:{listener.getsockname()[1]}"
-        server.should_exit = True
-        thread.join(timeout=PATIENCE_MS / 1e3)
+def address(atlas: Client, serve: Callable[..., Any]) -> Iterator[str]:
+    with serve(atlas.app, ws="none") as connection:
+        yield f"http://{connection.host}:{connection.port}"
 
 
 @pytest.fixture(scope="module")

@@ -77,13 +77,6 @@ def test_a_click_on_a_node_requires_its_value_and_another_takes_it_back(wide: Vi
         expect(page.locator('select[name="detector"]')).to_have_value(value)
 
 
-def test_a_refusal_is_shown_as_the_service_words_it(wide: Visit) -> None:
-    page = wide.go("/?detector=CMOSS")
-    alert = page.get_by_role("alert").inner_text()
-    assert "CMOSS" in alert
-    assert "did you mean “CMOS”" in alert
-
-
 def test_the_keyboard_alone_asks_and_opens_calibrations(wide: Visit) -> None:
     page = wide.go()
     page.keyboard.press("Tab")

@@ -123,42 +123,6 @@ def test_the_terms_go_with_the_files(built):
     assert "CC BY 4.0" in (built.directory / "survey" / "LICENSE").read_text("utf-8")
 
 
-@pytest.mark.slow
-def test_a_build_that_fails_midway_leaves_the_earlier_bundle(built, tmp_path, monkeypatch):
-    out = tmp_path / "bundle"
-    shutil.copytree(built.directory, out)
-
-    def full(*_arguments):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(deposit, "pack", full)
-    with pytest.raises(OSError, match="No space"):
-        build(out)
-    assert files(out) == files(built.directory)
-    assert [path.name for path in tmp_path.iterdir()] == ["bundle"]
-
-
-@pytest.mark.slow
-def test_a_bundle_that_cannot_be_moved_into_place_leaves_the_earlier_one(
-    built, tmp_path, monkeypatch
-):
-    out = tmp_path / "bundle"
-    shutil.copytree(built.directory, out)
-    (out / "README.md").write_text("of before")
-    before, rename = files(out), Path.rename
-
-    def refuse(path, target):
-        if target == out and path.parent != tmp_path:
-            raise OSError(5, "Input/output error")
-        return rename(path, target)
-
-    monkeypatch.setattr(Path, "rename", refuse)
-    with pytest.raises(OSError, match="Input/output"):
-        build(out)
-    assert files(out) == before
-    assert [path.name for path in tmp_path.iterdir()] == ["bundle"]
-
-
 def test_tables_with_problems_are_not_deposited(tmp_path):
     survey = tmp_path / "survey"
     shutil.copytree(Path(survey_data.__file__).parent, survey)

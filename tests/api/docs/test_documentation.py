@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ import pytest
 from api.docs import built_parts, documentation, front
 from api.docs.documentation import DocumentationError, regenerate, renew_parts
 from benchmark.assessment.definitions import DEFINITIONS
-from survey_data.descriptor import DATA_DIRECTORY
 
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
@@ -49,19 +47,6 @@ def test_a_part_that_is_missing_unknown_or_there_twice_is_named(
 ) -> None:
     with pytest.raises(DocumentationError, match=r"page\.md: expected"):
         renew_parts("page.md", text, {name: lambda: "" for name in parts})
-
-
-def test_built_sensors_stand_with_their_own_detector_and_mask() -> None:
-    """Independent of the figure: rows of the hardware table, read as text."""
-    with (DATA_DIRECTORY / "hardware.csv").open(encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["accuracy_deg"]]
-    seen = [row for row in rows if row["basis"] == "page"]
-    found = front.built_sensors()
-    assert sum(map(len, found.values())) == len(seen)
-    for detector, mask in found:
-        beside = [row for row in seen if (row["detector"], row["mask"]) == (detector, mask)]
-        assert len(found[detector, mask]) == len(beside)
-    assert ("CCD", "Single-Ap.") not in found, "TU Delft's and TNO's are CMOS chips"
 
 
 def test_every_built_sensor_below_its_bound_is_drawn_open() -> None:

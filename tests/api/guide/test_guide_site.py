@@ -10,12 +10,10 @@ from pathlib import Path
 
 import pytest
 
-import survey_data
 from api.addresses import NAVIGATION
 from api.docs import extension
 from api.guide import site
 from api.guide.site import GuideError
-from api.mathml import mathml
 from benchmark.progress import ProgressCallback
 from tests.api.conftest import Client
 
@@ -104,33 +102,12 @@ def test_every_link_between_built_pages_leads_to_a_heading(built: Built) -> None
 
 
 @pytest.mark.slow
-def test_the_page_of_the_python_interface_has_the_docstrings(built: Built) -> None:
-    out, _ = built
-    ids = set(re.findall(r' id="([^"]+)"', (out / "guide" / "python.html").read_text("utf-8")))
-    page = (DOCS / "guide" / "python.md").read_text("utf-8")
-    modules = re.findall(r"^\.\. automodule:: (\S+)$", page, re.MULTILINE)
-    assert len(modules) > 20
-    assert {f"module-{name}" for name in modules} <= ids
-    assert {f"survey_data.{name}" for name in survey_data.__all__} <= ids
-    assert {"algorithms.pipeline.Pipeline.predict_features", "benchmark.datasets.get"} <= ids
-
-
-@pytest.mark.slow
 def test_equations_are_drawn_without_a_script(built: Built) -> None:
     out, _ = built
     text = (out / "models.html").read_text("utf-8")
     assert text.count("<math") > 40
     assert "$$" not in text
     assert not re.search(r"<m[io]>[^<]*\\", text), "a command that was not understood"
-
-
-def test_an_equation_is_mathml_and_what_the_converter_does_not_know_is_said_otherwise() -> None:
-    drawn = mathml(r"\hat t = \arg\min_t \frac{a}{b}", block=True)
-    assert drawn.startswith("<math")
-    assert 'display="block"' in drawn
-    assert "<mfrac>" in drawn
-    assert "\\" not in drawn
-    assert 'display="inline"' in mathml(r"\arcsin x")
 
 
 def test_scripts_that_stand_in_pages_become_files(tmp_path: Path) -> None:
@@ -193,35 +170,6 @@ def test_every_page_leads_back_to_the_atlas_and_what_it_names_to_its_page(
     for link, page_name in links.items():
         response = atlas.get(link, accept="text/html, */*;q=0.8")
         assert response.status_code == 200, (page_name, link)
-
-
-def test_a_site_of_which_a_page_cannot_be_written_is_not_put_in_place(
-    pages: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A directory comes where Sphinx is about to write a page: it warns, and would go on."""
-    settings = {"extensions": ["myst_parser"], "source_suffix": {".md": "markdown"}}
-    monkeypatch.setattr(site, "_settings", lambda: settings)
-
-    def block(done: int, total: int, _page: str) -> None:
-        if done == total:
-            (made,) = (path.parent for path in tmp_path.rglob("_static"))
-            (made / "index.html").mkdir(exist_ok=True)
-
-    out = tmp_path / "out"
-    with pytest.raises(
-        GuideError, match=f"cannot be written whole: .*{out}.*; nothing was changed"
-    ):
-        site.build(out, block)
-    assert [path.name for path in tmp_path.iterdir()] == [pages.name]
-
-
-def test_pages_that_sphinx_refuses_leave_nothing_behind(
-    pages: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(site, "_settings", lambda: {"extensions": ["no.such"]})
-    with pytest.raises(GuideError, match="the guide cannot be built: Could not import extension"):
-        site.build(tmp_path / "out")
-    assert [path.name for path in tmp_path.iterdir()] == [pages.name]
 
 
 def test_an_earlier_guide_is_replaced_and_nothing_else(pages: Path, tmp_path: Path) -> None:

@@ -134,14 +134,3 @@ def test_documents_have_the_records_own_errors(knowledge: Knowledge) -> None:
     assert len(rows) == 30
     for pipeline, dataset, error in rows:
         assert error == digits(own[dataset, pipeline]), dataset
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.00069213, "0.000692"), (9.996, "10.0"), (0.00009996, "0.000100"), (1234.0, "1,230"),
-     (1.0, "1.00"), (0.0, "0"), (None, "-")],
-)  # fmt: skip
-def test_errors_have_three_significant_digits_and_no_exponent(
-    value: float | None, text: str
-) -> None:
-    assert digits(value) == text
