@@ -11,13 +11,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from api.metadata.croissant import PARQUET, DatasetDescription, File, Table, croissant
+from api.metadata.croissant import (
+    PARQUET,
+    DatasetDescription,
+    Entity,
+    croissant,
+    file_object,
+    record_set,
+)
 from api.metadata.identity import Identity
 from api.metadata.served import SUBJECTS, of_dataset, of_record, tables_of_samples
 from benchmark import datasets
 from benchmark.datasets.export import read_card
 from benchmark.results import samples
-from files.checksums import contents, sha256
+from files.checksums import contents
 
 FOLDER = "croissant"
 RECORD, SURVEY = "record", "survey"
@@ -78,7 +85,7 @@ def _of_tables(
         key = one["schema"].get("primaryKey", ())
         key = (key,) if isinstance(key, str) else key
         files.append(file)
-        tables.append(Table(one["name"], file.name, one["description"], columns, key))
+        tables.append(record_set(one["name"], file["name"], one["description"], columns, key))
     return croissant(what, who, files, tables)
 
 
@@ -99,19 +106,21 @@ def _of_dataset(bundle: Path, name: str, who: Identity) -> dict[str, Any]:
     }
     files = [*_files_of_samples(bundle, name)]
     tables = [
-        _table_of_samples(bundle, name, file) for file in files if file.media_types == ("text/csv",)
+        _table_of_samples(bundle, name, file)
+        for file in files
+        if file["encodingFormat"] == "text/csv"
     ]
     if (bundle / _errors(name)).is_file():
         described = [
             _file(bundle, _errors(name), PARQUET, "Errors sample by sample."),
             _file(bundle, _errors(name, directions=True), PARQUET, "Directions of the samples."),
         ]
-        tables = [*tables_of_samples(*(file.name for file in described)), *tables]
+        tables = [*tables_of_samples(*(file["name"] for file in described)), *tables]
         files = [*described, *files]
     return croissant(of_dataset(card, None), who, files, tables)
 
 
-def _files_of_samples(bundle: Path, name: str) -> Iterator[File]:
+def _files_of_samples(bundle: Path, name: str) -> Iterator[Entity]:
     folder = bundle / _FRAMES / name
     if not folder.is_dir():
         return
@@ -123,10 +132,10 @@ def _files_of_samples(bundle: Path, name: str) -> Iterator[File]:
             yield _file(bundle, f"{_FRAMES}/{name}/{part}", kind, said)
 
 
-def _table_of_samples(bundle: Path, name: str, file: File) -> Table:
+def _table_of_samples(bundle: Path, name: str, file: Entity) -> Entity:
     """Return what the CSV of a split holds; its columns are parts of the arrays of the card."""
     meanings = read_card(bundle / _FRAMES / name)["arrays"]
-    with (bundle / file.name).open(encoding="utf-8", newline="") as lines:
+    with (bundle / file["name"]).open(encoding="utf-8", newline="") as lines:
         rows = csv.reader(lines)
         header, first = next(rows), next(rows)
     columns = []
@@ -135,10 +144,9 @@ def _table_of_samples(bundle: Path, name: str, file: File) -> Table:
         array = "observations" if array == "signal" else array
         meaning = meanings.get(column) or meanings.get(array) or column
         columns.append((column, "boolean" if cell in {"True", "False"} else "number", meaning))
-    split = PurePosixPath(file.name).stem
-    return Table(split, file.name, f"A sample of the {split} split.", columns)
+    split = PurePosixPath(file["name"]).stem
+    return record_set(split, file["name"], f"A sample of the {split} split.", columns)
 
 
-def _file(bundle: Path, path: str, media_types: tuple[str, ...], said: str) -> File:
-    at = bundle / path
-    return File(path, f"../{path}", media_types, said, at.stat().st_size, sha256(at))
+def _file(bundle: Path, path: str, media_types: tuple[str, ...], said: str) -> Entity:
+    return file_object(path, f"../{path}", media_types, said, (bundle / path).read_bytes())

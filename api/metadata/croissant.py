@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -34,57 +34,44 @@ CONTEXT = json.loads(Path(__file__).with_name("croissant_context.json").read_tex
 
 Column = tuple[str, str, str]
 """Name, type as a Table Schema calls it, and meaning."""
+Entity = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class File:
-    """A file of a data set.
+def file_object(
+    name: str,
+    address: str,
+    media_types: Sequence[str],
+    description: str,
+    content: bytes,
+) -> Entity:
+    """Return a file of a data set.
 
-    Attributes
+    Parameters
     ----------
     name : of the file, unique within the data set
     address : where it is: a URL, or a path from the folder of the document
     media_types : the first is the one that Croissant knows
     description : what it holds
-    size : bytes
-    digest : SHA-256, hexadecimal
+    content : its bytes
     """
-
-    name: str
-    address: str
-    media_types: tuple[str, ...]
-    description: str
-    size: int
-    digest: str
-
-    @classmethod
-    def of(
-        cls, content: bytes, name: str, address: str, media_types: tuple[str, ...], description: str
-    ) -> File:
-        """Return a file by its bytes."""
-        digest = sha256(content).hexdigest()
-        return cls(name, address, media_types, description, len(content), digest)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the file as Croissant describes it."""
-        types = self.media_types
-        return {
-            "@type": "cr:FileObject",
-            "@id": self.name,
-            "name": self.name,
-            "description": self.description,
-            "contentUrl": self.address,
-            "contentSize": f"{self.size} B",
-            "encodingFormat": types[0] if len(types) == 1 else list(types),
-            "sha256": self.digest,
-        }
+    return {
+        "@type": "cr:FileObject",
+        "@id": name,
+        "name": name,
+        "description": description,
+        "contentUrl": address,
+        "contentSize": f"{len(content)} B",
+        "encodingFormat": media_types[0] if len(media_types) == 1 else list(media_types),
+        "sha256": sha256(content).hexdigest(),
+    }
 
 
-@dataclass(frozen=True)
-class Table:
-    """What the rows of a file hold.
+def record_set(
+    name: str, file: str, description: str, columns: Sequence[Column], key: Sequence[str] = ()
+) -> Entity:
+    """Return what the rows of a file hold.
 
-    Attributes
+    Parameters
     ----------
     name : unique within the data set
     file : name of the file
@@ -92,34 +79,25 @@ class Table:
     columns : in order
     key : columns that tell rows apart
     """
-
-    name: str
-    file: str
-    description: str
-    columns: Sequence[Column]
-    key: Sequence[str] = field(default=())
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the table as Croissant describes it, a record set."""
-        keys = [{"@id": f"{self.name}/{column}"} for column in self.key]
-        return {
-            "@type": "cr:RecordSet",
-            "@id": self.name,
-            "name": self.name,
-            "description": self.description,
-            **({"key": keys[0] if len(keys) == 1 else keys} if keys else {}),
-            "field": [self._field(*column) for column in self.columns],
-        }
-
-    def _field(self, name: str, kind: str, meaning: str) -> dict[str, Any]:
-        return {
-            "@type": "cr:Field",
-            "@id": f"{self.name}/{name}",
-            "name": name,
-            "description": meaning,
-            "dataType": TYPES[kind],
-            "source": {"fileObject": {"@id": self.file}, "extract": {"column": name}},
-        }
+    keys = [{"@id": f"{name}/{column}"} for column in key]
+    return {
+        "@type": "cr:RecordSet",
+        "@id": name,
+        "name": name,
+        "description": description,
+        **({"key": keys[0] if len(keys) == 1 else keys} if keys else {}),
+        "field": [
+            {
+                "@type": "cr:Field",
+                "@id": f"{name}/{column}",
+                "name": column,
+                "description": meaning,
+                "dataType": TYPES[kind],
+                "source": {"fileObject": {"@id": file}, "extract": {"column": column}},
+            }
+            for column, kind, meaning in columns
+        ],
+    }
 
 
 @dataclass(frozen=True)
@@ -144,7 +122,7 @@ class DatasetDescription:
 
 
 def croissant(
-    what: DatasetDescription, who: Identity, files: Sequence[File], tables: Sequence[Table]
+    what: DatasetDescription, who: Identity, files: Sequence[Entity], tables: Sequence[Entity]
 ) -> dict[str, Any]:
     """Return the metadata of a data set as JSON-LD.
 
@@ -169,8 +147,8 @@ def croissant(
         "keywords": list(what.keywords),
         "citeAs": cite_as(what, who),
         "isAccessibleForFree": True,
-        "distribution": [file.to_dict() for file in files],
-        "recordSet": [table.to_dict() for table in tables],
+        "distribution": list(files),
+        "recordSet": list(tables),
     }
 
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api.metadata.croissant import PARQUET, Column, DatasetDescription, File, Table
+from api.metadata.croissant import (
+    PARQUET,
+    Column,
+    DatasetDescription,
+    Entity,
+    file_object,
+    record_set,
+)
 from api.metadata.errors import DIRECTIONS, ERRORS
 from api.metadata.identity import Identity
 from api.schema.datasets import Data
@@ -55,17 +62,17 @@ def of_record(who: Identity, base: str | None) -> DatasetDescription:
     )
 
 
-def tables_of_samples(errors: str, directions: str) -> list[Table]:
+def tables_of_samples(errors: str, directions: str) -> list[Entity]:
     """Return the tables of a data set's errors and directions, by the names of their files."""
     return [
-        Table(
+        record_set(
             "errors",
             errors,
             "Error of a pipeline on a sample of the test split, under the nominal condition.",
             _columns(ERRORS),
             ("extractor", "model", "unit", "sample"),
         ),
-        Table(
+        record_set(
             "directions",
             directions,
             "A sample of the test split: the true direction and the bound.",
@@ -75,7 +82,7 @@ def tables_of_samples(errors: str, directions: str) -> list[Table]:
     ]
 
 
-def files_of_samples(name: str, contents: Mapping[str, bytes], base: str) -> list[File]:
+def files_of_samples(name: str, contents: Mapping[str, bytes], base: str) -> list[Entity]:
     """Return the files of a data set's errors and directions, as served.
 
     Parameters
@@ -89,31 +96,31 @@ def files_of_samples(name: str, contents: Mapping[str, bytes], base: str) -> lis
         "directions": "Directions of the test samples, and their bounds.",
     }
     return [
-        File.of(
-            content,
+        file_object(
             f"{name}.{kind}.parquet",
             f"{base}v1/datasets/{name}/{kind}.parquet",
             PARQUET,
             said[kind],
+            content,
         )
         for kind, content in contents.items()
     ]
 
 
-def table_of_data(content: bytes, name: str, base: str) -> tuple[File, Table]:
+def table_of_data(content: bytes, name: str, base: str) -> tuple[Entity, Entity]:
     """Return the CSV of a data set's hashes and bounds, as served; parameters as above."""
-    file = File.of(
-        content,
+    file = file_object(
         f"{name}.csv",
         f"{base}v1/datasets/{name}?format=csv",
         CSV,
         "Hash of each split in each condition, and its Cramer-Rao bound.",
+        content,
     )
     said = "A split of the data set in a condition."
-    return file, Table("splits", file.name, said, _columns_of(Data), ("condition", "split"))
+    return file, record_set("splits", file["name"], said, _columns_of(Data), ("condition", "split"))
 
 
-def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
+def table_of_ranks(content: bytes, base: str) -> tuple[Entity, Entity]:
     """Return the CSV of the leaderboard, as served.
 
     Parameters
@@ -121,17 +128,17 @@ def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
     content : its bytes
     base : address of the service, ending in a slash
     """
-    file = File.of(
-        content,
+    file = file_object(
         "leaderboard.csv",
         f"{base}v1/leaderboard?format=csv&whole=true",
         CSV,
         "Every pipeline on every data set and condition, ranked.",
+        content,
     )
     key = ("dataset", "condition", "extractor", "model")
-    return file, Table(
+    return file, record_set(
         "ranks",
-        file.name,
+        file["name"],
         "A pipeline on a data set in a condition.",
         _columns_of(LeaderboardRow),
         key,

@@ -13,7 +13,7 @@ from markupsafe import Markup
 from api.addresses import study_page
 from api.mathml import mathml
 from api.pages.formulas import tex
-from api.pages.terms import term_label
+from api.pages.terms import marked, term_label
 from registry.studies import facts
 from survey_data import labels
 
@@ -87,18 +87,15 @@ def _paragraphs(text: str) -> list[str]:
 
 def mark_up(text: str) -> Markup:
     """Return a text of a docstring: formulas typeset, other literals as code, studies linked."""
-    parts, at = [], 0
-    for found in _LITERAL.finditer(text):
-        parts.append(_link(text[at : found.start()]))
-        literal = found.group(1)
-        if literal:
-            parts.append(_formula(literal, found[2]))
-        elif found[3] in labels.labels():
-            parts.append(term_label(found[3]))
-        else:
-            parts.append(Markup("<code>{}</code>").format(found[3]))
-        at = found.end()
-    return Markup("").join([*parts, _link(text[at:])])
+    return marked(_LITERAL, text, _literal, _link)
+
+
+def _literal(found: re.Match[str]) -> Markup:
+    if found[1]:
+        return _formula(found[1], found[2])
+    if found[3] in labels.labels():
+        return term_label(found[3])
+    return Markup("<code>{}</code>").format(found[3])
 
 
 def _formula(text: str, stop: str) -> Markup:
@@ -116,13 +113,14 @@ def _formula(text: str, stop: str) -> Markup:
 
 def _link(text: str) -> Markup:
     """Return a text with links to the studies that it names, and of labels to what they are."""
-    studies, parts, at = facts("all").studies, [], 0
-    for found in _WORD.finditer(text):
-        if found[0] in studies:
-            link = Markup('<a href="{}">{}</a>').format(study_page(found[0]), found[0])
-            parts += [term_label(text[at : found.start()]), link]
-            at = found.end()
-    return Markup("").join([*parts, term_label(text[at:])])
+    studies = facts("all").studies
+
+    def linked(found: re.Match[str]) -> Markup:
+        if found[0] not in studies:
+            return Markup.escape(found[0])
+        return Markup('<a href="{}">{}</a>').format(study_page(found[0]), found[0])
+
+    return marked(_WORD, text, linked, term_label)
 
 
 def _parameters(text: str) -> list[tuple[str, str, Markup]]:

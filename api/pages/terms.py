@@ -68,35 +68,41 @@ def term(name: str, text: str | None = None) -> Markup:
     return link.format(id=known.id, short=known.short, text=text or name)
 
 
-def code_markup(text: str, prose: Callable[[str], Markup] = Markup.escape) -> Markup:
-    """Return a text, what stands between backquotes as code and the rest by `prose`."""
+def marked(
+    pattern: re.Pattern[str],
+    text: str,
+    mark: Callable[[re.Match[str]], Markup],
+    prose: Callable[[str], Markup] = Markup.escape,
+) -> Markup:
+    """Return a text, what a pattern finds in it by `mark` and the rest by `prose`."""
     parts, at = [], 0
-    for found in _LITERAL.finditer(text):
-        code = Markup("<code>{}</code>").format(found["code"])
-        parts += [prose(text[at : found.start()]), code]
+    for found in pattern.finditer(text):
+        parts += [prose(text[at : found.start()]), mark(found)]
         at = found.end()
     return Markup("").join([*parts, prose(text[at:])])
+
+
+def code_markup(text: str, prose: Callable[[str], Markup] = Markup.escape) -> Markup:
+    """Return a text, what stands between backquotes as code and the rest by `prose`."""
+    code = Markup("<code>{}</code>")
+    return marked(_LITERAL, text, lambda found: code.format(found["code"]), prose)
 
 
 def explain_terms(text: str) -> Markup:
     """Return a text, each abbreviation's first place in it with its meaning, literals as code."""
     met: set[str] = set()
-    return code_markup(text, lambda prose: _explain(prose, met))
 
-
-def _explain(text: str, met: set[str]) -> Markup:
-    """Return a text with the meanings of abbreviations not `met` before, which it adds there."""
-    text = labels.label_of(text)
-    parts: list[Markup] = []
-    at = 0
-    for found in _abbreviations().finditer(text):
+    def explained(found: re.Match[str]) -> Markup:
         name = found.group()
         if name in met:
-            continue
+            return Markup.escape(name)
         met.add(name)
-        parts += [Markup.escape(text[at : found.start()]), term(name)]
-        at = found.end()
-    return Markup("").join([*parts, Markup.escape(text[at:])])
+        return term(name)
+
+    def explain(prose: str) -> Markup:
+        return marked(_abbreviations(), labels.label_of(prose), explained)
+
+    return code_markup(text, explain)
 
 
 def display_text(value: str, attribute: str) -> str:
@@ -139,16 +145,9 @@ def method_value(text: str, attribute: str) -> Markup:
 
 def term_label(text: str) -> Markup:
     """Return a text, what each label of the survey's source in it names in the label's place."""
-    alone = text in labels.labels()
-    parts: list[Markup] = []
-    at = 0
-    for found in labels.LABEL.finditer(text):
-        label = found.group()
-        name = labels.name(label) if alone else labels.mention(label)
-        shown = Markup('<span title="{}">{}</span>').format(label, name)
-        parts += [Markup.escape(text[at : found.start()]), shown]
-        at = found.end()
-    return Markup("").join([*parts, Markup.escape(text[at:])])
+    name = labels.name if text in labels.labels() else labels.mention
+    shown = Markup('<span title="{}">{}</span>')
+    return marked(labels.LABEL, text, lambda found: shown.format(found[0], name(found[0])))
 
 
 def cite_study(source: str, key: str = "") -> Markup:

@@ -26,7 +26,7 @@ def dataset_croissant(known: Knowledge, name: str, base: str) -> Document:
     if published:
         found = served.files_of_samples(name, {k: make() for k, make in published.items()}, base)
         files = [*found, file]
-        tables = [*served.tables_of_samples(*(one.name for one in found)), table]
+        tables = [*served.tables_of_samples(*(one["name"] for one in found)), table]
     described = served.of_dataset(known.measurements.card(name), base)
     document = croissant(described, identity(), files, tables)
     landing = landing_of_dataset(known, name)

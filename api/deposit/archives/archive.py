@@ -24,8 +24,6 @@ from api.metadata.identity import version
 
 #: How often a request is tried, and the longest pause that a server may ask for, in seconds.
 TRIES, PATIENCE = 6, 900.0
-#: Bytes of an answer; a list of a hundred files has a hundredth of it.
-LARGEST = 4 << 20
 _ALL = "/api/records"
 _IDENTIFIER = r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$"
 #: Without what a terminal would act on, and letters that turn the direction of reading.
@@ -149,7 +147,6 @@ class Archive:
     ) -> None:
         self.server = server
         self._token = token.get_secret_value()
-        self._timeout = timeout
         self._http = httpx.Client(
             base_url=server.address,
             headers={
@@ -274,38 +271,28 @@ class Archive:
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
             place = ".".join(map(str, first["loc"])) or "the whole"
-            raise self._unreadable(method, where, f"{place}: {first['msg']}") from None
+            text = f"{method} {where}: the answer cannot be read: {place}: {first['msg']}"
+            raise ArchiveError(self._shown(text)) from None
 
     def _do(self, method: str, where: str, **body: Any) -> bytes:
-        """Ask once; return the body of the answer, and read no more than there should be."""
-        said, end = bytearray(), time.monotonic() + self._timeout
+        """Ask once; return the body of the answer."""
         try:
-            with self._http.stream(method, where, **body) as answer:
-                for chunk in answer.iter_raw():
-                    said += chunk
-                    if len(said) > LARGEST:
-                        raise self._unreadable(method, where, f"more than {LARGEST:,} bytes")
-                    if time.monotonic() > end:
-                        raise self._unreadable(method, where, f"not whole in {self._timeout:g} s")
+            answer = self._http.request(method, where, **body)
         except (httpx.HTTPError, httpx.InvalidURL) as error:
             why = str(error) or type(error).__name__
             message = self._shown(f"{method} {where}: no whole answer ({why})")
             raise MomentaryError(message) from error
         if not answer.is_success:
-            raise self._refusal(f"{method} {where}", answer, bytes(said))
-        return bytes(said)
+            raise self._refusal(f"{method} {where}", answer)
+        return answer.content
 
-    def _unreadable(self, method: str, where: str, why: str) -> ArchiveError:
-        text = f"{method} {where}: the answer cannot be read: {why}"
-        return ArchiveError(self._shown(text))
-
-    def _refusal(self, what: str, answer: httpx.Response, said: bytes) -> ArchiveError:
+    def _refusal(self, what: str, answer: httpx.Response) -> ArchiveError:
         status = 302 if answer.has_redirect_location else answer.status_code
         advice = _ADVICE.get(status, "").format(
             variable=self.server.variable, address=self.server.address
         )
         json = "json" in answer.headers.get("Content-Type", "")
-        reason = said[:2000].decode("utf-8", "replace") if json else ""
+        reason = answer.text[:2000] if json else ""
         parts = (f"{what}: {answer.status_code} {answer.reason_phrase}", advice, reason)
         message = self._shown("; ".join(part for part in parts if part))
         after = answer.headers.get("Retry-After", "")

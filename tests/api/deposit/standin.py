@@ -26,7 +26,7 @@ class StandIn:
 
     `fault(step, kind, times)` has so many requests of a step fail: with a status, "drop before"
     (nothing is done), "drop after" (the work is done, the answer is lost), "hold" (no answer),
-    "drip" (a byte now and then), "wrong checksum", or with bytes that are sent as they are.
+    "wrong checksum", or with bytes that are sent as they are.
     """
 
     def __init__(self) -> None:
@@ -182,7 +182,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.stand_in.signed.add(self.headers.get("Authorization"))
         faults = self.stand_in.faults.get(step)
         kind = faults.pop(0) if faults else None
-        if isinstance(kind, bytes) or kind in {"drop before", "drip", "hold"}:
+        if isinstance(kind, bytes) or kind in {"drop before", "hold"}:
             self._break(kind)
             return
         if isinstance(kind, int):
@@ -210,9 +210,6 @@ class _Handler(BaseHTTPRequestHandler):
         with suppress(OSError):  # the client may have had enough of it
             if isinstance(kind, bytes):
                 self.connection.sendall(kind)
-            while kind == "drip":
-                self.connection.sendall(b"HTTP/1.1 200 OK\r\n\r\n ")
-                time.sleep(0.05)
 
     def _say(self, status: int, document: Any, headers: dict[str, str] | None = None):
         said = b"" if status == 204 else json.dumps(document).encode()

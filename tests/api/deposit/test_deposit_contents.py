@@ -8,11 +8,9 @@ import subprocess
 import sys
 from contextlib import closing
 
-import bibtexparser
 import numpy as np
 import pyarrow.parquet
 import pytest
-import rispy
 
 from api.deposit.database import sql_name
 from api.deposit.forms import CellError, write_other_forms
@@ -111,32 +109,6 @@ def test_a_cell_of_another_type_does_not_go_out(bundle, tmp_path):
     path.write_text(path.read_text("utf-8").replace(",2008,", ",MMVIII,", 1), "utf-8")
     with pytest.raises(CellError, match=r"studies\.csv.*Row #\d+.*int64.*MMVIII"):
         write_other_forms(bundle, {"resources": described(bundle)}, tmp_path)
-
-
-def test_bibtex_is_read_back_with_every_identified_study(built):
-    library = bibtexparser.parse_string(
-        (built.directory / "bibliography" / "studies.bib").read_text("utf-8")
-    )
-    assert library.failed_blocks == []
-    studies = {r["key"]: r for r in rows(built.directory / "survey" / "studies.csv") if r["title"]}
-    assert {entry.key for entry in library.entries} == studies.keys()
-    assert len(studies) > 90
-    for entry in library.entries:
-        study, found = studies[entry.key], {f.key: f.value for f in entry.fields}
-        assert found["year"] == study["year"]
-        assert found.get("doi", "") == study["doi"]
-        assert found["title"].strip("{}").replace("\\", "") == study["title"]
-
-
-def test_ris_is_read_back_with_every_identified_study(built):
-    found = rispy.loads((built.directory / "bibliography" / "studies.ris").read_text("utf-8"))
-    studies = {r["key"]: r for r in rows(built.directory / "survey" / "studies.csv") if r["title"]}
-    assert {entry["id"] for entry in found} == studies.keys()
-    for entry in found:
-        study = studies[entry["id"]]
-        assert entry["title"] == " ".join(study["title"].split())
-        assert (entry["year"], entry.get("doi", "")) == (study["year"], study["doi"])
-        assert not entry.get("unknown_tag")
 
 
 def test_the_crate_names_every_file_with_its_checksum(built):
