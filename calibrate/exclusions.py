@@ -13,7 +13,7 @@ from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, SensorGeometry
 from calibrate.readings import BEHIND, FAINT_ROWS, NO_SUM, Readings
-from calibrate.robust import normalised, robust_map
+from calibrate.robust import nearest, normalised, robust_map
 from calibrate.selection import Candidate, fitted, unbounded
 
 #: Why samples are left out.
@@ -91,12 +91,10 @@ def kept_by_model(
 
 def _around(features: Floats, inside: NDArray[np.bool_], errors: Floats) -> Floats:
     """Return the median error (N,) of the samples inside that are nearest in features."""
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     used = normalised(features)
     used = used / np.maximum(used.std(axis=0), 1e-12)
     known = np.flatnonzero(inside & np.isfinite(errors))
-    near = np.asarray(cKDTree(used[known]).query(used, k=min(12, len(known)))[1])
+    near = nearest(used[known], used, min(12, len(known)))[1]
     return np.asarray(np.median(errors[known][near.reshape(len(used), -1)], axis=1))
 
 
@@ -219,12 +217,10 @@ def unexplained(
 
 def _gathered(readings: Readings, wrong: Readings) -> bool:
     """Say whether wrong poses lie next to each other more than chance has them do."""
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     if len(wrong) < _NEIGHBOURS:
         return False
     every = np.vstack([wrong.sun, readings.sun])
-    near = np.asarray(cKDTree(every).query(wrong.sun, k=min(_NEIGHBOURS + 1, len(every)))[1])[:, 1:]
+    near = nearest(every, wrong.sun, min(_NEIGHBOURS + 1, len(every)))[1][:, 1:]
     share = len(wrong) / len(every)
     return bool((near < len(wrong)).mean() > min(_GATHERED * share, 0.5 + share / 2.0))
 
@@ -249,12 +245,10 @@ def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     direction or change the other way, and where such a sample, of a direction far away, has the
     same reading.
     """
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     nothing = np.zeros(len(sun), dtype=np.bool_)
     if features.shape[1] != 2 or len(sun) < _FEWEST_FOR_FOLDS:
         return nothing
-    near = np.asarray(cKDTree(sun).query(sun, k=_NEAREST + 1)[1])
+    near = nearest(sun, sun, _NEAREST + 1)[1]
     parts = [
         _slopes(features, sun, near[start : start + _AT_ONCE])
         for start in range(0, len(near), _AT_ONCE)
@@ -273,8 +267,8 @@ def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     used = normalised(features)
     used = used / np.maximum(used.std(axis=0), 1e-12)
     inner = np.flatnonzero(~zone)
-    step = float(np.median(np.asarray(cKDTree(used[inner]).query(used[inner], k=2)[0])[:, 1]))
-    away, at = (np.asarray(a) for a in cKDTree(used[zone]).query(used[inner]))
+    step = float(np.median(nearest(used[inner], used[inner], 2)[0][:, 1]))
+    away, at = nearest(used[zone], used[inner], 1)
     same = (away < step) & (separation_deg(sun[inner], sun[zone][at]) > _APART_DEG)
     zone[inner[same]] = True
     return np.asarray(zone)

@@ -41,6 +41,17 @@ class SmoothMap:
         return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
 
 
+def nearest(among: Floats, at: Floats, count: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Return distances and places (N, count) of those of points (M, D) that are nearest to (N, D).
+
+    Without the last axis where the count is 1.
+    """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
+
+    distance, place = cKDTree(among).query(at, k=count)
+    return np.asarray(distance), np.asarray(place)
+
+
 def terms(scaled: Floats, degree: int) -> Floats:
     """Return all products of features (N, F) up to a degree, (N, terms)."""
     columns = [np.ones(len(scaled))]
@@ -133,10 +144,8 @@ def answer_noise_deg(features: Floats, sun: Floats) -> float:
 
     The map errs alike on neighbours. The median of their differences is that of two normal errors.
     """
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     left = residuals(robust_map(features, sun)[0], features, sun)
-    near = np.asarray(cKDTree(sun).query(sun, k=2)[1])[:, 1]
+    near = nearest(sun, sun, 2)[1][:, 1]
     square = ((left - left[near]) ** 2).sum(axis=1)
     return float(np.degrees(np.sqrt(np.median(square) / (2.0 * np.log(2.0)))))
 
@@ -155,15 +164,13 @@ def wrong_poses(features: Floats, sun: Floats, least_deg: float = 0.0) -> NDArra
     deviations, count. Features (N, F) are finite; departures below the bench's floor, `least_deg`,
     are never wrong poses.
     """
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     step = max(-(-len(sun) // _MOST_MAPPED), 1)
     left = residuals(robust_map(features[::step], sun[::step])[0], features, sun)
     size = np.degrees(np.linalg.norm(left, axis=1))
     count = min(_NEIGHBOURS + 1, len(left))
     used = normalised(features)
     used = used / np.maximum(used.std(axis=0), 1e-12)
-    near = np.asarray(cKDTree(used).query(used, k=count)[1])[:, 1:]
+    near = nearest(used, used, count)[1][:, 1:]
     departure, locally = np.empty(len(left)), np.empty(len(left))
     for start in range(0, len(left), _MOST_MAPPED):  # what neighbours leave is large
         part = slice(start, start + _MOST_MAPPED)

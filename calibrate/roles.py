@@ -12,6 +12,8 @@ from typing import Any, cast, get_args
 import numpy as np
 
 from algorithms.contract import FeatureKind, Floats
+from calibrate.causes.applying import with_cells
+from calibrate.conventions.findings import left_deg
 from calibrate.forms import names as words
 from calibrate.forms.attitudes import are_matrices, are_quaternions
 from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit, is_angle, named
@@ -330,8 +332,6 @@ def _one_axis(columns: _Columns, numeric: list[str]) -> ReadingsSettings | None:
 
 def _as_cells(table: Table, settings: Settings, notes: list[str]) -> Settings:
     """Return settings with channels where four readings are plain cells, not quadrants."""
-    from calibrate.causes.applying import with_cells  # noqa: PLC0415 - it reads tables, too
-
     if settings.direction.form == "one-angle" or settings.readings.kind != "quadrants":
         return settings
     try:
@@ -427,8 +427,6 @@ def _words(settings: Settings) -> str:
 
 def _left_deg(table: Table, settings: Settings) -> float:
     """Return what a low-order map from readings leaves of directions, degrees; inf if none fits."""
-    from calibrate.conventions.findings import projective_left_deg  # noqa: PLC0415 - one use
-
     try:
         readings = readings_of(table, settings).thinned(_JUDGED)
     except TableError:
@@ -437,7 +435,7 @@ def _left_deg(table: Table, settings: Settings) -> float:
         return float("inf")
     if readings.kind is FeatureKind.SIGNALS:
         return float(np.median(robust_map(readings.features, readings.sun, 2)[1]))
-    return projective_left_deg(readings)
+    return left_deg(readings, readings.sun)
 
 
 def points_from_light(table: Table, settings: Settings) -> bool:

@@ -19,6 +19,7 @@ from calibrate.places import (
     tangent_axes,
 )
 from calibrate.readings import Readings
+from calibrate.robust import nearest
 from calibrate.selection import Candidate, fitted, fold_of
 
 #: 95 % of a normal variable lie within so many standard deviations.
@@ -154,12 +155,10 @@ def noise_deg(offsets: Floats, sun: Floats) -> float:
 
     A model errs alike on neighbours: half the mean square of their difference is noise.
     """
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     known = np.isfinite(offsets).all(axis=1)
     if known.sum() < 10:
         return float("nan")
-    near = np.asarray(cKDTree(sun[known]).query(sun[known], k=2)[1])[:, 1]
+    near = nearest(sun[known], sun[known], 2)[1][:, 1]
     difference = offsets[known] - offsets[known][near]
     square = (difference**2).sum(axis=1)
     return float(np.degrees(np.sqrt(_middle(square) / 2.0)))
@@ -167,16 +166,13 @@ def noise_deg(offsets: Floats, sun: Floats) -> float:
 
 def noise_around(offsets: Floats, sun: Floats) -> Floats:
     """Return the RMS noise (N,) of each sample, degrees: as `noise_deg`, of the poses around it."""
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     whole = noise_deg(offsets, sun)
     known = np.flatnonzero(np.isfinite(offsets).all(axis=1))
     if len(known) < 4 * _AROUND:
         return np.full(len(sun), whole)
-    tree = cKDTree(sun[known])
-    pairs = np.asarray(tree.query(sun[known], k=2)[1])[:, 1]
+    pairs = nearest(sun[known], sun[known], 2)[1][:, 1]
     square = ((offsets[known] - offsets[known][pairs]) ** 2).sum(axis=1)
-    near = np.asarray(tree.query(sun, k=_AROUND)[1])
+    near = nearest(sun[known], sun, _AROUND)[1]
     around = np.degrees(np.sqrt(np.mean(square[near], axis=1) / 2.0))
     usual = np.sqrt(np.mean(around[known] ** 2))
     return np.asarray(around * (whole / usual) if usual > 0 else around)

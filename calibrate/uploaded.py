@@ -12,11 +12,20 @@ import re
 import signal
 import subprocess
 import sys
+import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from algorithms.contract import UnusableDataError
+from calibrate.calibration import calibrate
+from calibrate.products import products
+from calibrate.report.page import Asked
+from calibrate.report.requirement import RequirementError, requirement
+from calibrate.settings import SettingsError, parse_settings, parse_toml
+from calibrate.table import TableError, read_table
+from calibrate.template import preview
 from files.atomic import temporary_directory
 
 #: Bytes of all files together and of a config, seconds, and bytes of memory of a calibration.
@@ -150,18 +159,11 @@ def _safe(name: str, number: int) -> str:
 
 def _answer(directory: Path) -> dict[str, Any]:
     """Return the answer, why there is none, or the program's fault."""
-    import traceback  # noqa: PLC0415 - of the process
-
-    from algorithms.contract import UnusableDataError  # noqa: PLC0415 - as above
-    from calibrate.report.requirement import RequirementError  # noqa: PLC0415 - as above
-    from calibrate.settings import SettingsError  # noqa: PLC0415 - as above
-    from calibrate.table import TableError  # noqa: PLC0415 - as above
-
     task = json.loads((directory / _TASK).read_text("utf-8"))
     paths = [directory / name for name in task["names"]]
     refusals = (TableError, SettingsError, RequirementError, UnusableDataError)
     try:
-        return {"answer": _previewed(paths[0]) if task.get("preview") else _made(paths, task)}
+        return {"answer": preview(paths[0]) if task.get("preview") else _made(paths, task)}
     except refusals as error:
         return {"refused": str(error)}
     except MemoryError:
@@ -171,20 +173,7 @@ def _answer(directory: Path) -> dict[str, Any]:
         return {"fault": said[:_LONGEST_FAULT], "trace": traceback.format_exc()}
 
 
-def _previewed(path: Path) -> dict[str, Any]:
-    from calibrate.template import preview  # noqa: PLC0415 - of the process
-
-    return preview(path)
-
-
 def _made(paths: Sequence[Path], task: dict[str, Any]) -> dict[str, str]:
-    from calibrate.calibration import calibrate  # noqa: PLC0415 - of the process
-    from calibrate.products import products  # noqa: PLC0415 - as above
-    from calibrate.report.page import Asked  # noqa: PLC0415 - as above
-    from calibrate.report.requirement import requirement  # noqa: PLC0415 - as above
-    from calibrate.settings import parse_settings, parse_toml  # noqa: PLC0415 - as above
-    from calibrate.table import TableError, read_table  # noqa: PLC0415 - as above
-
     settings = None
     if task["config"].strip():
         settings = parse_settings(parse_toml(task["config"], "config"), "config")

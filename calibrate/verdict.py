@@ -14,6 +14,7 @@ from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
 from calibrate.halves import Halves
 from calibrate.readings import Readings
+from calibrate.robust import nearest
 from calibrate.uncertainty import NORMAL_95, tangent_offsets
 
 Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
@@ -203,14 +204,11 @@ def next_poses(sun: Floats, count: int = _NEXT) -> tuple[Floats, float]:
     inside = grid[hull.holds(grid)] if len(hull.facets) else grid
     if not len(inside):
         return np.empty((0, 3)), 0.0
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
     # poses nearer to each other than a hundredth of the field are one, as repeats are
     cell = max(2.0 * np.sin(np.radians(min(reach, 180.0)) / 2.0), 1e-6) / 50.0
     poses = np.unique(np.round(sun / cell), axis=0) * cell
-    tree = cKDTree(poses)
-    step = float(np.median(np.asarray(tree.query(poses, k=2)[0])[:, 1]))
-    away = np.asarray(tree.query(inside)[0])
+    step = float(np.median(nearest(poses, poses, 2)[0][:, 1]))
+    away = nearest(poses, inside, 1)[0]
     gap = float(away.max()) / max(step, 1e-9)
     chosen = []
     for _ in range(min(count, len(inside))):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from calibrate.readings import Readings
-from calibrate.robust import degree_for, terms
+from calibrate.robust import degree_for, nearest, terms
 
 _BLOCKS = 8
 #: What a law leaves, over the noise, to be followed.
@@ -60,9 +60,7 @@ def reading_noise(values: Floats, sun: Floats) -> Floats:
 
     The surface errs alike on neighbours. The median of their differences is that of normal errors.
     """
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
-    near = np.asarray(cKDTree(sun).query(sun, k=2)[1])[:, 1]
+    near = nearest(sun, sun, 2)[1][:, 1]
     degree = degree_for(len(sun), 2)
     places = [(sun, min(degree, 4))]
     if (sun[:, 2] > _STEEPEST).all():  # what images tangents is smooth over tangents

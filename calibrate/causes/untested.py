@@ -7,6 +7,7 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Model
 from calibrate.causes.kinks import largest_unnoticed
+from calibrate.causes.lag import fraction_late
 from calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
 from calibrate.causes.light import (
     LESS_LIGHT,
@@ -48,8 +49,6 @@ def untested_in(
     Settings are those applied; `dark_found` says whether their level without light was found in the
     file, not stated.
     """
-    from calibrate.causes.lag import fraction_late  # noqa: PLC0415 - one use
-
     used = readings.thinned(_MOST)
     found = []
     noise = answer_noise_deg(used.features, used.sun)

@@ -166,13 +166,13 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
     if readings.angles is None or settings.direction.form not in get_args(AngleForm):
         return
     stated = cast("AngleForm", settings.direction.form)
-    left = {stated: _left_deg(readings, readings.sun)}
+    left = {stated: left_deg(readings, readings.sun)}
     angles = readings.angles
     largest = float(np.nanmax(np.abs(angles)))
     if settings.direction.unit == "deg" and largest <= np.pi:
         turned = sun_of_angles(np.degrees(angles), stated)
         if (turned[:, 2] > 0.05).mean() > 0.95:
-            after = _left_deg(readings, turned)
+            after = left_deg(readings, turned)
             before = left[stated] * 180.0 / np.pi  # the same share of a field 57 times as large
             if after < BETTER * before:
                 yield Finding(
@@ -190,7 +190,7 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
         sun = sun_of_angles(angles, form)
         if not (np.isfinite(sun).all() and (sun[:, 2] > GRAZING).all()):
             continue
-        left[form] = _left_deg(readings, sun)
+        left[form] = left_deg(readings, sun)
     best = min(left, key=lambda word: left[word])
     if best != stated and left[best] < BETTER * left[stated]:
         yield Finding(
@@ -233,8 +233,11 @@ def _flips(readings: Readings) -> Iterator[tuple[str, Floats]]:
         yield what, centre + (readings.features - centre) * np.asarray(sign)
 
 
-def _left_deg(readings: Readings, sun: Floats) -> float:
-    """RMS residual, degrees, of a projective map with cubic distortion, without the worst tenth."""
+def left_deg(readings: Readings, sun: Floats) -> float:
+    """Return the RMS residual, degrees, of a projective map with cubic distortion.
+
+    Without the worst tenth.
+    """
     finite = np.isfinite(sun).all(axis=1) & (sun[:, 2] > GRAZING)
     used, features = sun[finite], readings.features[finite]
     middle, width = np.median(features, axis=0), np.maximum(np.std(features), 1e-12)
@@ -263,11 +266,6 @@ def _left_deg(readings: Readings, sun: Floats) -> float:
         weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-15))
     kept = np.sort(size)[: max(int(0.9 * len(size)), 1)]
     return float(np.degrees(np.sqrt(np.mean(kept**2))))
-
-
-def projective_left_deg(readings: Readings) -> float:
-    """Return what a projective map with cubic distortion leaves of directions, degrees RMS."""
-    return _left_deg(readings, readings.sun)
 
 
 def _median_deg(fitted: SmoothMap, features: Floats, sun: Floats) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.contract import Floats
 from algorithms.models.geometric.detector_faces import axis_faces, opposite_pairs
 from algorithms.models.geometric.panoramic import FLATTEST
-from calibrate.flight.program import NoCodeError, Step
+from calibrate.flight.program import NoCodeError, Step, run
 
 #: Steps of an assembled array towards a direction; ten are usual, a few rows take more.
 STEPS = 60
@@ -112,8 +112,6 @@ def _drift(stage: Any, signals: Floats, context: Mapping[str, Floats]) -> Step:
         },
         signals.shape[1] * (4 * (degree + 1) + 2) + 3 * degree + 2,
     )  # fmt: skip
-    from calibrate.flight.program import run  # noqa: PLC0415 - a step on its own
-
     exact = stage.transform(signals, context)
     off = np.abs(run((made,), signals, kelvin)[0] - exact)
     if not float(off.max()) <= _CLOSE * float(np.abs(exact).max()):

@@ -82,7 +82,7 @@ def test_a_config_nested_too_deep_is_said_to_be_at_fault(
 def test_an_error_of_the_program_is_called_one(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is no want of memory; the server's log has the traceback."""
     monkeypatch.setattr("resource.setrlimit", lambda *_: None)
-    monkeypatch.setattr("calibrate.calibration.calibrate", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("calibrate.uploaded.calibrate", lambda *_, **__: 1 / 0)
     assert uploaded.main([str(task)]) == 0
     said = json.loads((task / "said.json").read_text(encoding="utf-8"))
     assert said["fault"] == "ZeroDivisionError: division by zero"
