@@ -264,7 +264,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         chosen, why = choose(candidates)
     count = 2 * len(wanted)
     tick("fit")
-    thinned = readings.only(np.arange(0, len(readings), max(-(-len(readings) // MOST_FITTED), 1)))
+    thinned = readings.thinned(MOST_FITTED)
     model = fitted(wanted[chosen.name], thinned, geometry)
     offsets = model.predict(readings.features, readings.context) - readings.sun
     residual = rms(separation_deg(offsets + readings.sun, readings.sun))
@@ -277,7 +277,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     tick("halves")
     split = halves(same, sample, geometry, around)
     tick("verdict")
-    compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
+    compared = readings.thinned(len(np.asarray(chosen.offsets)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
     left_out = errors_left_out(same, chosen, compared, geometry, model, removed)
@@ -335,8 +335,3 @@ def _fit_spread(
         return spread_deg(refits(scored, sample, geometry, noise, readings))
     except UnusableDataError:
         return unknown
-
-
-def _step(readings: Readings, chosen: Candidate) -> int:
-    count = len(np.asarray(chosen.offsets))
-    return max(-(-len(readings) // count), 1)

@@ -80,6 +80,11 @@ class Grid:
         return first, np.cross(self.axis, first)
 
 
+def off_axis_deg(sun: Floats) -> Floats:
+    """Return the angle (N,) of directions (N, 3) from the boresight."""
+    return np.asarray(np.degrees(np.arctan2(np.linalg.norm(sun[:, :2], axis=1), sun[:, 2])))
+
+
 def bilinear(weights: tuple[Floats, Floats], table: Floats) -> Floats:
     """Return the values (N, 2) of a table (K, M, 2) at the weights that `Grid.weights` gives."""
     return np.asarray(np.einsum("nk,nm,kma->na", *weights, table, optimize=True))

@@ -8,8 +8,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from algorithms.calibration.documents import DIGEST
 from calibrate.calibration import Calibration
 from calibrate.documents import (
@@ -23,6 +21,7 @@ from calibrate.flight.code import FlightCode, corrected_code, flight_code
 from calibrate.flight.names import c_name
 from calibrate.flight.program import NoCodeError
 from calibrate.one_axis import AxisCurve
+from calibrate.places import off_axis_deg
 from calibrate.recalibration import Correction, poses_of
 from calibrate.report.certificate import certificate
 from calibrate.report.page import Asked, correction_report, outcomes_of, report
@@ -140,13 +139,12 @@ def _code(found: Calibration) -> FlightCode:
 
 def _readings(found: Calibration) -> str:
     """Say what readings are, what is done to them before the model, and the field."""
-    stated, sun = found.settings.readings, found.readings.sun
-    off = np.degrees(np.arctan2(np.hypot(sun[:, 0], sun[:, 1]), sun[:, 2]))
+    stated, reach = found.settings.readings, off_axis_deg(found.readings.sun).max()
     turns = ", ".join(found.settings.apply) if stated.kind != "channels" else ""
     return (
         f"{stated.kind} of {', '.join(stated.columns)}"
         f"{', falling when light rises' if stated.inverted else ''}"
-        f"{f'; axes: {turns}' if turns else ''}; calibrated up to {off.max():.1f} deg off +z"
+        f"{f'; axes: {turns}' if turns else ''}; calibrated up to {reach:.1f} deg off +z"
     )
 
 

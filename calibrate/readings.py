@@ -195,8 +195,14 @@ def sun_of_angles(angles_deg: Floats, form: AngleForm) -> Floats:
 
 
 def _signals(raw: Floats, settings: ReadingsSettings) -> Floats:
-    sign = -1.0 if settings.inverted else 1.0
-    return np.asarray(sign * (raw - np.asarray(settings.dark)) / np.asarray(settings.gain))
+    return np.asarray(settings.sign * (raw - np.asarray(settings.dark)) / np.asarray(settings.gain))
+
+
+def raw_of(signals: Floats, settings: ReadingsSettings) -> Floats:
+    """Return readings (N, K) as a file's columns have them of signals: less dark over gain."""
+    return np.asarray(
+        np.asarray(settings.dark) + settings.sign * np.asarray(settings.gain) * signals
+    )
 
 
 def _turned(features: Floats, settings: Settings) -> Floats:

@@ -150,8 +150,7 @@ def compare(
 
     Settings of a model (orders, smoothing) are chosen inside each fit, from its samples alone.
     """
-    step = max(-(-len(readings) // MOST_COMPARED), 1)
-    used = readings.only(np.arange(0, len(readings), step))
+    used = readings.thinned(MOST_COMPARED)
     fold, _ = fold_of(used)
     judged = _inside(used, fold)
     found = []

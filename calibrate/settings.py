@@ -114,6 +114,11 @@ class ReadingsSettings(_Strict):
         default="mirror", description="Of kind frames: the extractor that finds the spot in each."
     )
 
+    @property
+    def sign(self) -> float:
+        """-1 where readings fall when light rises, 1 otherwise."""
+        return -1.0 if self.inverted else 1.0
+
     @model_validator(mode="after")
     def _check(self) -> ReadingsSettings:
         count, wanted = len(self.columns), COLUMNS[self.kind]

@@ -17,7 +17,7 @@ from calibrate.causes.light import (
     level_of_channels,
 )
 from calibrate.conventions.channels import dark_of
-from calibrate.readings import Readings, features_of
+from calibrate.readings import Readings, features_of, raw_of
 from calibrate.robust import answer_noise_deg
 from calibrate.settings import Settings
 
@@ -91,14 +91,12 @@ def moved_by_less_light(model: Model, readings: Readings, settings: Settings) ->
     if not np.isfinite(dark.error):
         return float("nan")
     as_is = model.predict(used.features, used.context)
-    stated = settings.readings
-    sign = -1.0 if stated.inverted else 1.0
     square = np.zeros(len(used))
     for column in range(used.raw.shape[1]):
         light = (1.0 - LESS_LIGHT) * used.raw
         light[:, column] += LESS_LIGHT * dark.error
-        raw = np.asarray(stated.dark) + sign * np.asarray(stated.gain) * light
-        moved = separation_deg(model.predict(features_of(raw, settings), used.context), as_is)
+        features = features_of(raw_of(light, settings.readings), settings)
+        moved = separation_deg(model.predict(features, used.context), as_is)
         square = np.maximum(square, moved**2)
     known = np.isfinite(square)
     return float(np.sqrt(np.mean(square[known]))) if known.any() else float("nan")

@@ -20,7 +20,7 @@ from calibrate.causes.light import (
     without_stray,
 )
 from calibrate.conventions.finding import MUCH_BETTER, Finding
-from calibrate.readings import FALLING, Readings, quadrant_balances
+from calibrate.readings import FALLING, Readings, quadrant_balances, raw_of
 from calibrate.robust import least_absolute, robust_map
 from calibrate.settings import Settings
 
@@ -98,9 +98,7 @@ def _agreed(one: Dark, other: Dark) -> Dark:
 
 def _stated_as(dark: Dark, settings: Settings) -> tuple[float, ...]:
     """Return the level of each column as settings have it: in the file's own units."""
-    stated = settings.readings
-    sign = -1.0 if stated.inverted else 1.0
-    level = np.asarray(stated.dark) + sign * np.asarray(stated.gain) * dark.level
+    level = raw_of(dark.level, settings.readings)
     return tuple(float(f"{value:.6g}") for value in level)
 
 

@@ -28,7 +28,7 @@ from calibrate.flight.program import (
 from calibrate.flight.runtime import STATUSES
 from calibrate.flight.sources import c_files, python_module
 from calibrate.forms.units import KELVIN
-from calibrate.readings import MATRICES, Readings
+from calibrate.readings import MATRICES, Readings, raw_of
 from calibrate.selection import deviation_of
 from calibrate.settings import ReadingsSettings, RowSettings, Settings
 
@@ -147,7 +147,7 @@ def flight_code(found: Calibration) -> FlightCode:
         )
     program = Program(columns, (*steps, *made), thermometer, words)
     raw = np.empty((len(used), len(columns)))
-    raw[:, steps[0].constants["place"]] = raw_readings(used, settings.readings)
+    raw[:, steps[0].constants["place"]] = raw_of(used.raw, settings.readings)
     kelvin = used.context.get("temperature_K", np.zeros(len(used)))
     model = found.model.predict(used.features, used.context)
     return judged_code(
@@ -214,7 +214,7 @@ def corrected_code(saved: SavedCalibration, poses: Readings) -> FlightCode:
     program = _corrected(program_of(saved.document.get("flight")), saved)
     made = program.steps[0].constants
     raw = np.empty((len(poses), len(program.columns)))
-    raw[:, made["place"]] = raw_readings(poses, saved.settings.readings)
+    raw[:, made["place"]] = raw_of(poses.raw, saved.settings.readings)
     kelvin = poses.context.get("temperature_K", np.zeros(len(poses)))
     # steps answer in the old frame, which is turned last
     model = saved.predict(poses.features, poses.context) @ saved.rotation
@@ -232,11 +232,10 @@ def _corrected(program: Program, saved: SavedCalibration) -> Program:
     count = len(stated.columns)
     if len(program.steps[0].constants["place"]) != count:
         raise NoCodeError("the old document's program is of other columns than its settings")
-    sign = -1.0 if stated.inverted else 1.0
     constants = {
         **program.steps[0].constants,
         "dark": np.broadcast_to(np.asarray(stated.dark, dtype=np.float64), count).copy(),
-        "gain": sign * np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), count),
+        "gain": stated.sign * np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), count),
     }
     return replace(
         program, steps=(replace(program.steps[0], constants=constants), *program.steps[1:])
@@ -283,12 +282,6 @@ def limits_of(found: Calibration) -> RawLimits:
     )
 
 
-def raw_readings(readings: Readings, settings: ReadingsSettings) -> Floats:
-    """Return the readings (N, K) as the file had them, in the order of the settings' columns."""
-    sign = -1.0 if settings.inverted else 1.0
-    return np.asarray(sign * readings.raw * np.asarray(settings.gain) + np.asarray(settings.dark))
-
-
 def columns_of(found: Calibration) -> tuple[str, ...]:
     """Return the columns of readings in the file's order."""
     known = set(found.settings.readings.columns)
@@ -305,7 +298,6 @@ def raw_steps(columns: Sequence[str], settings: Settings, limits: RawLimits) -> 
     """Return the steps from raw readings to features."""
     stated = settings.readings
     count = len(stated.columns)
-    sign = -1.0 if stated.inverted else 1.0
     steps = [
         Step(
             "readings",
@@ -313,7 +305,7 @@ def raw_steps(columns: Sequence[str], settings: Settings, limits: RawLimits) -> 
                 "readings": count,
                 "place": places_of(columns, stated),
                 "dark": np.broadcast_to(np.asarray(stated.dark, dtype=np.float64), count).copy(),
-                "gain": sign
+                "gain": stated.sign
                 * np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), count).copy(),
                 "low": np.asarray(limits.low, dtype=np.float64),
                 "high": np.asarray(limits.high, dtype=np.float64),

@@ -118,8 +118,7 @@ def _errors(found: Calibration) -> _Result:
 def _rings(found: Calibration) -> list[_Result]:
     """Return the errors of samples left out by their angle from the boresight."""
     errors = np.asarray(found.chosen.errors)
-    step = max(-(-len(found.readings) // len(errors)), 1)
-    readings = found.readings.only(np.arange(0, len(found.readings), step))
+    readings = found.readings.thinned(len(errors))
     off = np.degrees(np.arccos(np.clip(readings.sun[:, 2], -1.0, 1.0)))
     sigma = found.deviation_deg(readings.features, dict(readings.context))
     known = np.isfinite(errors) & np.isfinite(sigma)

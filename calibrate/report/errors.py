@@ -13,6 +13,7 @@ from algorithms.angles import separation_deg
 from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
 from calibrate.calibration import Calibration
+from calibrate.places import off_axis_deg
 from calibrate.readings import Readings
 from calibrate.uncertainty import NORMAL_95, tangent_offsets
 
@@ -38,9 +39,7 @@ class Errors:
         """Return those of the chosen model, each sample by a fit without its run or block."""
         offsets = found.chosen.offsets if found.left_out is None else found.left_out
         count = len(found.readings) if offsets is None else len(offsets)
-        used = found.readings.only(
-            np.arange(0, len(found.readings), max(-(-len(found.readings) // count), 1))
-        )
+        used = found.readings.thinned(count)
         if offsets is None:
             offsets = np.full((len(used), 3), np.nan)
         errors = separation_deg(used.sun + offsets, used.sun)
@@ -60,8 +59,7 @@ class Errors:
     @cached_property
     def off_axis_deg(self) -> Floats:
         """Angle (M,) of each true direction from the boresight."""
-        sun = self.readings.sun
-        return np.asarray(np.degrees(np.arctan2(np.linalg.norm(sun[:, :2], axis=1), sun[:, 2])))
+        return off_axis_deg(self.readings.sun)
 
     @cached_property
     def covered(self) -> NDArray[np.bool_]:

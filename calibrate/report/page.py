@@ -13,9 +13,9 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from algorithms.contract import Floats
 from calibrate.calibration import Calibration
 from calibrate.documents import selection_table, versions
+from calibrate.places import off_axis_deg
 from calibrate.readings import Readings
 from calibrate.recalibration import Correction
 from calibrate.report.errors import (
@@ -176,7 +176,7 @@ def correction_report(
 
     `said` is what else is said, by its name; the date is by default today in UTC.
     """
-    off = _off_axis_deg(poses)
+    off = off_axis_deg(poses.sun)
     order = np.argsort(-np.nan_to_num(found.errors_deg, nan=np.inf), kind="stable")
     rows = [
         (int(poses.rows[at]), float(off[at]), float(found.errors_deg[at])) for at in order[:_LISTED]
@@ -211,8 +211,3 @@ def outcomes_of(
         np.where(answered, 0.0, np.nan)[:, None] * np.ones(2),
     )
     return [judged(one, poses.sun, errors) for one in requirements]
-
-
-def _off_axis_deg(poses: Readings) -> Floats:
-    sun = poses.sun
-    return np.asarray(np.degrees(np.arctan2(np.hypot(sun[:, 0], sun[:, 1]), sun[:, 2])))

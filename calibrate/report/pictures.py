@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from calibrate.calibration import Calibration
+from calibrate.places import off_axis_deg
 from calibrate.readings import Readings
 from calibrate.report.errors import Errors, field_of, level, ray
 from calibrate.report.requirement import Requirement
@@ -58,7 +59,7 @@ def pictures(
 
 def _flat(sun: Floats) -> Floats:
     """Directions (N, 3) on a plane: angle off the boresight, in degrees, along x and y."""
-    off = np.degrees(np.arctan2(np.linalg.norm(sun[:, :2], axis=1), sun[:, 2]))
+    off = off_axis_deg(sun)
     around = np.arctan2(sun[:, 1], sun[:, 0])
     return np.column_stack([off * np.cos(around), off * np.sin(around)])
 

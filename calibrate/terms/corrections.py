@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.calibration.saving import UnreadableCalibrationError
 from algorithms.contract import Floats
-from calibrate.readings import MATRICES
+from calibrate.readings import MATRICES, raw_of
 from calibrate.settings import Settings
 
 #: Number that no reading reaches, and how far rows of a rotation may be from one.
@@ -76,11 +76,9 @@ def of_features(settings: Settings, offset: Floats, gain: Floats) -> tuple[Float
 def with_changes(settings: Settings, offset: Floats, gain: Floats) -> Settings:
     """Return settings whose signals are less an offset (K,), over a gain (K,)."""
     stated = settings.readings
-    sign = -1.0 if stated.inverted else 1.0
-    dark = np.asarray(stated.dark) + sign * np.asarray(stated.gain) * offset
     made = stated.model_copy(
         update={
-            "dark": tuple(float(v) for v in dark),
+            "dark": tuple(float(v) for v in raw_of(offset, stated)),
             "gain": tuple(float(v) for v in np.asarray(stated.gain) * gain),
         }
     )

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import bench
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from calibrate.recalibration import Correction, Errors, recalibrate
+from calibrate.recalibration import recalibrate
 from calibrate.roles import guess
 from calibrate.table import read_table
 
@@ -53,6 +52,9 @@ def test_moved_readings_are_an_offset_that_a_wrong_pose_does_not_move(tmp_path: 
     assert found.after.median_deg < 0.03
     assert found.before.median_deg > 0.5
     assert found.after.largest_deg > 10.0  # the wrong pose is not hidden
+    for errors in (found.before, found.after):
+        said = f"median {errors.median_deg:.3g}, largest {errors.largest_deg:.3g}"
+        assert f"{errors.rms_deg:.3g} deg RMS ({said})" in found.sentence()
 
 
 def test_poses_at_the_edge_of_the_old_field_settle_no_offset(tmp_path: Path) -> None:
@@ -61,23 +63,6 @@ def test_poses_at_the_edge_of_the_old_field_settle_no_offset(tmp_path: Path) -> 
     found = recalibrate([path], Pinhole(path, below=0.0))
     assert found.offset == (0.0, 0.0)
     assert found.samples == 12
-
-
-def correction(kinds: tuple[Any, ...], changes: tuple[str, ...], stated: float) -> Correction:
-    before, after = Errors(0.8, 0.2, 3.0, 0.5), Errors(0.1, 0.08, 0.2, 0.09)
-    return Correction(
-        kinds, (1.0, 1.0), (0.0, 0.0), NOT_TURNED, before, after if kinds else before,
-        changes, 12, 0, stated,
-    )  # fmt: skip
-
-
-def test_a_correction_is_told_with_rms_median_and_largest_before_and_after() -> None:
-    found = correction(("boresight",), ("a turn by 0.71 +- 0.02 deg",), 0.1)
-    assert found.explained
-    assert found.sentence() == (
-        "the old calibration errs 0.8 deg RMS (median 0.2, largest 3) on 12 poses; a turn by "
-        "0.71 +- 0.02 deg: that leaves 0.1 deg RMS (median 0.08, largest 0.2) on poses left out"
-    )
 
 
 @pytest.mark.parametrize("moved", [60.0, 200.0])
