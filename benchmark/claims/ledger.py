@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmark.claims.former import FormerOutcome, former_outcomes
 from benchmark.claims.judgement import Judgement, judge, verdict
 from benchmark.claims.outcomes import RECORD, ClaimOutcome, contradictions, read_outcomes
-from benchmark.claims.review import Review, published, reviews
+from benchmark.claims.review import FormerOutcome, Review, former_outcomes, published, reviews
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.results.store import PUBLISHED
 from survey_data import labels

@@ -7,6 +7,7 @@ the same for the same rows.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any
@@ -15,11 +16,11 @@ from benchmark.contract import ON_BENCH, Cell
 from benchmark.datasets import get, names
 from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.realism import hardware_match
-from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
 from benchmark.leaderboard.scope import BEHIND, UNITS, Studied, studies_of_pipelines
 from benchmark.metrics.ranking import RankedBoard, order, rank_board, spreads
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
-from benchmark.metrics.score import METRIC_VERSION, is_available
+from benchmark.metrics.score import METRIC_VERSION, METRICS, is_available
+from benchmark.metrics.separation import store
 from benchmark.results.components import SCHEMA_VERSION
 from benchmark.results.store import Store
 from benchmark.results.times import Times
@@ -289,3 +290,77 @@ def _cell(row: Row) -> Cell:
 
 def _used(row: Row) -> tuple[str, str, str, str]:
     return row["detector"], row["mask"], row["extractor"], row["model"]
+
+
+#: Draws on which a measured error on a bench rests at least.
+_FEWEST_UNITS = 10
+
+
+def on_bench(rows: Iterable[Row]) -> dict[Cell, float]:
+    """Return the root mean square error on drawn benches by pipeline, pooled over units.
+
+    By the cell of the standard unit under the first condition; pipelines that were calibrated on
+    benches on too few units are left out.
+    """
+    squares: dict[Cell, list[float]] = {}
+    for row in rows:
+        if row["condition"] == ON_BENCH and row["rms_all_answers_deg"] is not None:
+            cell = Cell(row["dataset"], "nominal", row["extractor"], row["model"])
+            squares.setdefault(cell, []).append(row["rms_all_answers_deg"] ** 2)
+    return {
+        cell: math.sqrt(math.fsum(found) / len(found))
+        for cell, found in squares.items()
+        if len(found) >= _FEWEST_UNITS
+    }
+
+
+def expected_on_bench(
+    own_error_deg: float | None, bench_deg: float | None, measured_deg: float | None
+) -> dict[str, Any]:
+    """Return ``on_bench_deg`` and ``on_bench_basis`` of a pipeline.
+
+    Where it was not measured on drawn benches it is the root of the squares of the own error and of
+    the bench's: what a model that follows its calibration cannot know.
+    """
+    if measured_deg is not None:
+        return {"on_bench_deg": store(measured_deg), "on_bench_basis": "measured"}
+    if own_error_deg is None or bench_deg is None:
+        return {"on_bench_deg": None, "on_bench_basis": None}
+    return {
+        "on_bench_deg": store(math.hypot(own_error_deg, bench_deg)),
+        "on_bench_basis": "estimated",
+    }
+
+
+def twins_of(rows: Iterable[Row]) -> dict[tuple[str, str, str], str]:
+    """Return the pipelines whose numbers are those of another throughout.
+
+    By extractor, model and data set: the first pipeline of the same extractor with the same numbers
+    under every condition and on every unit that both were scored on, as ``extractor + model``.
+    Pipelines without an error have no twin.
+    """
+    scores: dict[
+        tuple[str, str], dict[tuple[str, str], dict[tuple[str, int], tuple[Any, ...]]]
+    ] = {}
+    for row in rows:
+        place = row["dataset"], row["extractor"]
+        numbers = tuple(row[name] for name in METRICS)
+        if row["rms_all_answers_deg"] is not None:
+            of_model = scores.setdefault(place, {}).setdefault((row["extractor"], row["model"]), {})
+            of_model[row["condition"], row["unit"]] = numbers
+    found = {}
+    for (dataset, _), models in scores.items():
+        first: list[tuple[str, str]] = []
+        for pipeline in sorted(models):
+            mine = models[pipeline]
+            twin = next((one for one in first if _same(models[one], mine)), None)
+            if twin is None:
+                first.append(pipeline)
+            else:
+                found[*pipeline, dataset] = " + ".join(twin)
+    return found
+
+
+def _same(one: Mapping[Any, Any], other: Mapping[Any, Any]) -> bool:
+    shared = one.keys() & other.keys()
+    return bool(shared) and all(one[place] == other[place] for place in shared)

@@ -2,13 +2,14 @@
 
 What is measured is in the journal before more is awaited, so that a killed run loses only what
 was in flight; the store's files are written once, at the end. A line torn by a kill is dropped
-when the journal is read and cut off before more is appended (`benchmark.results.journal`). One
-process writes at a time.
+when the journal is read and cut off before more is appended. One process writes at a time.
 """
 
 from __future__ import annotations
 
 import binascii
+import json
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
@@ -20,10 +21,10 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.results import record_manifest
 from benchmark.results.components import Components, ComponentsError
 from benchmark.results.csv_tables import Row, StoreError
-from benchmark.results.journal import Journal
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
 from files.locks import LockedError, lock_or_refuse
+from files.reading import FileRefusedError, parse_json, read_bytes
 
 _What = TypeVar("_What")
 
@@ -275,3 +276,57 @@ def _keys(
 def _used(facts: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     wanted = set(names)
     return {name: known for name, known in facts.items() if name in wanted}
+
+
+_LARGEST = 2_000_000_000
+
+
+class Journal:
+    """A line of JSON for each thing measured, in a file that need not be there."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def read(self) -> Iterator[tuple[int, Any]]:
+        """Yield (number of the line, record) of every whole line; StoreError for what is none."""
+        for number, line in enumerate(self._whole_lines().splitlines(), start=1):
+            where = f"{self.path}, line {number}"
+            try:
+                record = parse_json(line.decode("utf-8"), self.path)
+            except FileRefusedError as error:
+                raise StoreError(f"{where}: {error.reason}") from error
+            except UnicodeDecodeError as error:
+                raise StoreError(f"{where}: not UTF-8 text") from error
+            if not isinstance(record, dict):
+                raise StoreError(f"{where}: not a record of the journal")
+            yield number, record
+
+    def append(self, records: Iterable[Mapping[str, Any]]) -> None:
+        """Add records; on return they survive a power cut."""
+        text = "".join(f"{json.dumps(record, allow_nan=False)}\n" for record in records)
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with self.path.open("ab") as file:
+                file.write(text.encode())
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:  # of a full disk names no file
+            raise OSError(error.errno, error.strerror, str(self.path)) from error
+
+    def cut_torn(self) -> None:
+        """Cut off a line that a kill left half written."""
+        if self.path.is_file():
+            os.truncate(self.path, len(self._whole_lines()))
+
+    def remove(self) -> None:
+        """Forget all of it."""
+        self.path.unlink(missing_ok=True)
+
+    def _whole_lines(self) -> bytes:
+        try:
+            content = read_bytes(self.path, _LARGEST)
+        except FileNotFoundError:
+            return b""
+        except FileRefusedError as error:
+            raise StoreError(str(error)) from error
+        return content[: content.rfind(b"\n") + 1]

@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
-from benchmark.leaderboard.findings.benches import benches
-from benchmark.leaderboard.findings.constants import constants
 from benchmark.leaderboard.findings.finding import Estimate, Finding
-from benchmark.leaderboard.findings.methods import methods
-from benchmark.leaderboard.findings.poses import poses
+from benchmark.leaderboard.findings.measured import benches, constants, methods, poses, sources
 from benchmark.leaderboard.findings.record import FindingsRecord
-from benchmark.leaderboard.findings.sources import sources
 from benchmark.learning_curves.record import published_curves
 from registry.resolution import Resolution
 

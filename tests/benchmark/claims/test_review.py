@@ -12,9 +12,8 @@ import pytest
 import survey_data
 from benchmark import datasets
 from benchmark.claims.experiment import find_experiments
-from benchmark.claims.former import former_outcomes
 from benchmark.claims.ledger import ledger
-from benchmark.claims.review import Review, published, reviews
+from benchmark.claims.review import Review, former_outcomes, published, reviews
 from benchmark.claims.rules import claims
 
 #: The survey's LaTeX source, which is not ours to publish; looked for beside this repository.

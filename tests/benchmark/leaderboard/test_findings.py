@@ -19,12 +19,8 @@ from api.deposit.derived_tables import resolution
 from benchmark.contract import Cell
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.leaderboard.findings import Finding, FindingsRecord, findings_of
-from benchmark.leaderboard.findings.benches import benches
-from benchmark.leaderboard.findings.constants import constants
 from benchmark.leaderboard.findings.finding import number
-from benchmark.leaderboard.findings.methods import methods
-from benchmark.leaderboard.findings.poses import poses
-from benchmark.leaderboard.findings.sources import sources
+from benchmark.leaderboard.findings.measured import benches, constants, methods, poses, sources
 from benchmark.metrics.ranking import UnitErrors
 from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.shown import data_sets

@@ -13,8 +13,7 @@ from fake_results import cell, components, numbers, pin
 from benchmark import datasets
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
-from benchmark.leaderboard.check import Difference, compare
-from benchmark.leaderboard.consistency import contradictions
+from benchmark.leaderboard.check import Difference, compare, contradictions
 from benchmark.plan.parts import Parts
 from benchmark.results.store import Store
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.contract import Cell
-from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
+from benchmark.leaderboard.board import expected_on_bench, on_bench, twins_of
 from benchmark.metrics.ranking import UnitErrors, order, rank_board
 from benchmark.metrics.score import METRICS
 

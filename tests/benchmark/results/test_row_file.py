@@ -11,8 +11,8 @@ from pydantic import BaseModel
 
 from benchmark.results import record_manifest
 from benchmark.results.csv_tables import StoreError, number, word
-from benchmark.results.pins import pins_text, read_pins
 from benchmark.results.row_file import Row, TableFile
+from benchmark.results.store import pins_text, read_pins
 
 
 class KeyOfGroup(BaseModel, extra="forbid"):
