@@ -89,11 +89,8 @@ def ledger(
 ) -> tuple[Entry, ...]:
     """Return every claim with its verdict, in the survey's order.
 
-    Raises
-    ------
-    LedgerError
-        Where an explanation was written for another verdict than the one that is measured, or an
-        outcome cannot be of its claim's plan.
+    LedgerError where an explanation was written for another verdict than the one that is measured,
+    or an outcome cannot be of its claim's plan.
     """
     outcomes, written = read_outcomes(directory), _explanations(explanations)
     if unknown := sorted(set(written) - set(claims())):

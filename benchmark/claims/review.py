@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from itertools import groupby
 from pathlib import Path
@@ -20,22 +20,6 @@ from benchmark.claims.rules import DIRECTORY, RulesError, Verdict, rows_of
 Case = Literal["its case", "partly its case", "not its case"]
 
 REVIEW = DIRECTORY / "claims_review.csv"
-COLUMNS = (
-    "claim",
-    "line",
-    "sentence",
-    "context_line",
-    "context",
-    "detector",
-    "mask",
-    "trial",
-    "trial_detector",
-    "trial_mask",
-    "case",
-    "verdict",
-    "reason",
-)
-
 _CITATIONS = re.compile(r"\s*\\cite\{[^}]*\}")
 _MATHS = (("^{\\circ}", "°"), ("^{-1/2}", "^-1/2"), ("4\\pi", "4π"), ("$", ""))
 
@@ -84,6 +68,9 @@ class Review:
         for mark, plain in _MATHS:
             said = said.replace(mark, plain)
         return said
+
+
+COLUMNS = ("claim", *(field.name for field in fields(Review)))
 
 
 def published(found: Verdict, case: Case) -> Verdict:

@@ -126,10 +126,7 @@ class Claim:
 def claims() -> Mapping[str, Claim]:
     """All claims by their ids, in the survey's order.
 
-    Raises
-    ------
-    RulesError
-        Where a claim has no rule or no plan, or a rule or plan no claim.
+    RulesError where a claim has no rule or no plan, or a rule or plan no claim.
     """
     table = survey_data.load().claims.set_index("id")
     stated = {

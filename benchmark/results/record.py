@@ -12,7 +12,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -109,16 +109,8 @@ class Record:
     ) -> None:
         """Take in what was measured with these components; on return it survives a power cut.
 
-        Parameters
-        ----------
-        components
-            Of what was measured.
-        pins, scores
-            Numbers.
-        errors
-            Of cells in `scores`, sample by sample (`benchmark.results.samples`).
-        directions
-            Samples that the errors are of, by data set.
+        `errors` are of cells in `scores`, sample by sample (`benchmark.results.samples`),
+        `directions` the samples that they are of, by data set.
         """
         records: list[Row] = [
             {"pin": asdict(pin), "key": components.pin_key(*pin.place[:2])} for pin in pins
@@ -157,12 +149,7 @@ class Record:
         """Write the store's files and forget the journal.
 
         What was measured with other components than these is left out, where these say anything
-        of it: code that has changed since cannot vouch for it.
-
-        Parameters
-        ----------
-        components
-            Of what was measured now; the others stay as they were.
+        of it: code that has changed since cannot vouch for it. The others stay as they were.
         """
         known = self._components.update(components)
         scores = {
@@ -175,13 +162,10 @@ class Record:
             for place, pin in self.pins.items()
             if self._pin_keys[place] == known.pin_key(*place[:2])
         ]
-        used = Components(
-            stages=known.stages,
-            datasets=_used(known.datasets, [c.dataset for c in scores] + [p.dataset for p in pins]),
-            extractors=_used(known.extractors, [cell.extractor for cell in scores]),
-            models=_used(known.models, [cell.model for cell in scores]),
-            modules=known.modules,
-            metric=known.metric,
+        datasets = {cell.dataset for cell in scores} | {pin.dataset for pin in pins}
+        used = replace(
+            known.only(scores),
+            datasets={name: one for name, one in known.datasets.items() if name in datasets},
         )
         if self._changed or used != self._components:
             # Scores last: while they are the old ones, the next call does all of it again.
@@ -232,14 +216,8 @@ class Record:
 def open_record(store: Store) -> Iterator[Record]:
     """Hold a store for writing; released by the system when the process ends, however it ends.
 
-    A write that a killed runner left is finished where only its end is missing.
-
-    Raises
-    ------
-    StoreLockedError
-        At once, when another process holds it.
-    StoreError, ComponentsError
-        For a file that cannot be read.
+    A write that a killed runner left is finished where only its end is missing. StoreLockedError,
+    at once, when another process holds it; StoreError, ComponentsError for a broken file.
     """
     directory = store.work_directory
     directory.mkdir(parents=True, exist_ok=True)
@@ -271,11 +249,6 @@ def _keys(
                 raise
             del numbers[what]
     return found
-
-
-def _used(facts: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
-    wanted = set(names)
-    return {name: known for name, known in facts.items() if name in wanted}
 
 
 _LARGEST = 2_000_000_000

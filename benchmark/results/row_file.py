@@ -48,10 +48,7 @@ class RowFile(Generic[C]):
     def read(self, directory: Path | str = PUBLISHED) -> dict[C, Row]:
         """Return rows by cell, sorted; none where there is no file.
 
-        Raises
-        ------
-        StoreError
-            For a file that holds anything else; the message names the row.
+        StoreError for a file that holds anything else; the message names the row.
         """
         path = Path(directory) / self.name
         try:
@@ -140,18 +137,16 @@ class TableFile(Generic[C]):
         kept: list[Row] = [
             row for row in rows.values() if row["key"] == groups[self.group_of(row)]["key"]
         ]
+        ordered: list[Row] = sorted(kept, key=self.place_of)
         lines = ",\n".join(
             f"{json.dumps(group)}:{json.dumps(groups[group], separators=(',', ':'))}"
             for group in sorted(groups)
         )
         contents = {
-            self.name: text_of(list(self.columns), self._sorted(kept)),
+            self.name: text_of(list(self.columns), ordered),
             self.shared_name: f"{{\n{lines}\n}}\n",
         }
         return record_manifest.write(Path(directory), contents)
-
-    def _sorted(self, rows: list[Row]) -> list[Row]:
-        return sorted(rows, key=self.place_of)
 
     def _groups(self, directory: Path) -> dict[str, Row]:
         path = directory / self.shared_name

@@ -19,7 +19,6 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict
-from functools import cached_property
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -77,13 +76,7 @@ class UnknownFieldError(LookupError):
 
 
 class Store:
-    """Results in a directory; made on the first write.
-
-    Parameters
-    ----------
-    directory
-        Where the files are; the published results by default.
-    """
+    """Results in a directory, by default the published ones; made on the first write."""
 
     def __init__(self, directory: Path | str = PUBLISHED) -> None:
         self.directory = Path(directory)
@@ -120,10 +113,7 @@ class Store:
     def scores(self) -> dict[Cell, Row]:
         """Return stored numbers by cell, sorted; nothing where there are no files.
 
-        Raises
-        ------
-        StoreError
-            For a line that is no row of scores, or one that is there twice.
+        StoreError for a line that is no row of scores, or one that is there twice.
         """
         folder = self.scores_directory
         if os.path.lexists(folder) and not folder.is_dir():
@@ -141,17 +131,9 @@ class Store:
         return {cell: found[cell] for cell in sorted(found)}
 
     def rows(self, unit: int | None = 0) -> list[Row]:
-        """Return scores with all that is known of what they are of, sorted.
+        """Return scores with all that is known of what they are of, sorted; of all units for None.
 
-        Parameters
-        ----------
-        unit
-            Of the sensor; the standard one by default, all units for None.
-
-        Raises
-        ------
-        StoreError, ComponentsError
-            For a file that cannot be read, or names what the others lack.
+        StoreError, ComponentsError for a file that cannot be read, or names what the others lack.
         """
         return describe(self.scores(), self.components(), self.pins(), unit)
 
@@ -163,12 +145,7 @@ class Store:
         """Return the rows whose fields have one of the wanted values.
 
         ``query(dataset="x", model=["a", "b"])``; a filter of None is no filter. Of the standard
-        unit.
-
-        Raises
-        ------
-        UnknownFieldError
-            For a field that no row has.
+        unit. UnknownFieldError for a field that no row has.
         """
         rows = self.rows()
         known = {name for row in rows for name in row} or set(_IDENTITY)
@@ -197,16 +174,7 @@ class Store:
         """Replace the files, each whole or not at all; unchanged ones are left alone.
 
         Components come last: numbers that a crash leaves beside the digests of older code are
-        measured again.
-
-        Parameters
-        ----------
-        scores
-            Numbers (`NUMBERS`) by cell.
-        pins
-            In any order.
-        components
-            What all that is of.
+        measured again. Scores are numbers (`NUMBERS`) by cell.
         """
         tables = {}
         for dataset, group in groupby(sorted(scores), key=lambda cell: cell.dataset):
@@ -239,9 +207,8 @@ def describe(
     unit: int | None = None,
 ) -> list[Row]:
     """Return scores with all that is known of what they are of, as `Store.rows`."""
-    context = _Context(components, pins)
     return [
-        context.row(cell, scores[cell])
+        _described(cell, scores[cell], components, pins)
         for cell in sorted(scores)
         if unit is None or cell.unit == unit
     ]
@@ -250,61 +217,47 @@ def describe(
 _IDENTITY = ("dataset", "condition", "extractor", "model", "unit", "status")
 
 
-class _Context:
-    """Facts that rows share."""
+def _described(cell: Cell, numbers: Row, components: Components, pins: Mapping[Place, Pin]) -> Row:
+    dataset, extractor, model = (
+        _facts(components, kind, name, cell)
+        for kind, name in (
+            ("datasets", cell.dataset),
+            ("extractors", cell.extractor),
+            ("models", cell.model),
+        )
+    )
+    calibration, test = (
+        pins.get((cell.dataset, cell.condition, split)) for split in ("calibration", "test")
+    )
+    return {
+        "dataset": cell.dataset,
+        "dataset_version": dataset["version"],
+        "condition": cell.condition,
+        "unit": cell.unit,
+        "detector": dataset["detector"],
+        "mask": dataset["mask"],
+        "half_fov_deg": dataset["half_fov_deg"],
+        "extractor": cell.extractor,
+        "extractor_taxonomy": extractor["taxonomy"],
+        "extractor_version": extractor["version"],
+        "model": cell.model,
+        "model_taxonomy": model["taxonomy"],
+        "model_version": model["version"],
+        "status": numbers["status"],
+        "reason": numbers["reason"],
+        "n_calibration": calibration.n if calibration else None,
+        "n_test": test.n if test else None,
+        "n_observable": test.observable if test else None,
+        **{name: numbers[name] for name in METRICS},
+        "metric_version": components.metric,
+    }
 
-    def __init__(self, components: Components, pins: Mapping[Place, Pin]) -> None:
-        self._components = components
-        self._pins = pins
 
-    def row(self, cell: Cell, numbers: Row) -> Row:
-        dataset = self._facts("datasets", cell.dataset, cell)
-        extractor = self._facts("extractors", cell.extractor, cell)
-        model = self._facts("models", cell.model, cell)
-        samples = self._samples(cell.dataset, cell.condition)
-        return {
-            "dataset": cell.dataset,
-            "dataset_version": dataset["version"],
-            "condition": cell.condition,
-            "unit": cell.unit,
-            "detector": dataset["detector"],
-            "mask": dataset["mask"],
-            "half_fov_deg": dataset["half_fov_deg"],
-            "extractor": cell.extractor,
-            "extractor_taxonomy": extractor["taxonomy"],
-            "extractor_version": extractor["version"],
-            "model": cell.model,
-            "model_taxonomy": model["taxonomy"],
-            "model_version": model["version"],
-            "status": numbers["status"],
-            "reason": numbers["reason"],
-            **samples,
-            **{name: numbers[name] for name in METRICS},
-            "metric_version": self._components.metric,
-        }
-
-    def _facts(self, kind: str, name: str, cell: Cell) -> Facts:
-        known: Mapping[str, Facts] = getattr(self._components, kind)
-        if name not in known:
-            raise ComponentsError(f"the score of {cell} names {name!r}, unknown among the {kind}")
-        return known[name]
-
-    @cached_property
-    def _counted(self) -> dict[tuple[str, str], Row]:
-        return {}
-
-    def _samples(self, dataset: str, condition: str) -> Row:
-        place = dataset, condition
-        if place not in self._counted:
-            calibration, test = (
-                self._pins.get((dataset, condition, split)) for split in ("calibration", "test")
-            )
-            self._counted[place] = {
-                "n_calibration": calibration.n if calibration else None,
-                "n_test": test.n if test else None,
-                "n_observable": test.observable if test else None,
-            }
-        return self._counted[place]
+def _facts(components: Components, kind: str, name: str, cell: Cell) -> Facts:
+    known: Mapping[str, Facts] = getattr(components, kind)
+    if name not in known:
+        raise ComponentsError(f"the score of {cell} names {name!r}, unknown among the {kind}")
+    return known[name]
 
 
 _COLUMNS = {

@@ -256,21 +256,26 @@ def measure_tasks(
                 report(done, len(cells), experiment.name_of(found[0][0]) if found else "")
 
 
-def repeat_at_random(
-    experiment: RecordedExperiment[C], sample: int, seed: int, workers: int = 1
-) -> Iterator[tuple[C, str]]:
-    """Measure cells drawn at random again, and yield what is not as the record has it.
+def draw_cells(cells: Iterable[C], sample: int, seed: int) -> list[C]:
+    """Draw `sample` of the cells, or all where there are fewer, in order.
 
-    Each cell's lot is a digest of the seed and the cell.
+    Each cell's lot is a digest of the seed and its name: what else is in the record moves none.
     """
-    stored = experiment.record.read(experiment.directory)
+    if sample < 1:
+        raise ValueError(f"sample must be at least 1; got {sample}")
 
     def lot(cell: C) -> bytes:
         return hashlib.sha256(f"{seed} {cell}".encode()).digest()
 
-    known = set(experiment.cells())
-    drawn = sorted((cell for cell in stored if cell in known), key=lot)[:sample]
-    drawn.sort()
+    return sorted(sorted(set(cells), key=lot)[:sample])  # type: ignore[type-var]
+
+
+def repeat_at_random(
+    experiment: RecordedExperiment[C], sample: int, seed: int, workers: int = 1
+) -> Iterator[tuple[C, str]]:
+    """Measure cells drawn at random again, and yield what is not as the record has it."""
+    stored = experiment.record.read(experiment.directory)
+    drawn = draw_cells(stored.keys() & set(experiment.cells()), sample, seed)
     for found in measure_tasks(experiment, drawn, workers):
         for cell, row in found:
             one, other = (

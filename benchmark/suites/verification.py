@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -33,20 +32,6 @@ class VerificationResult:
     cells: tuple[Cell, ...]
     alike: int
     differences: tuple[Difference, ...]
-
-
-def draw_cells(cells: Iterable[Cell], sample: int, seed: int) -> list[Cell]:
-    """Draw `sample` of the cells, or all where there are fewer, in order.
-
-    Each cell's lot is a digest of the seed and its name: what else is in the record moves none.
-    """
-    if sample < 1:
-        raise ValueError(f"sample must be at least 1; got {sample}")
-
-    def lot(cell: Cell) -> bytes:
-        return hashlib.sha256(f"{seed} {cell}".encode()).digest()
-
-    return sorted(sorted(set(cells), key=lot)[:sample])
 
 
 def verify(

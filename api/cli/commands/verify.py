@@ -17,9 +17,9 @@ from api.cli.measuring import (
 )
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
+from benchmark.running.experiment import draw_cells
 from benchmark.suites.planning import cells_of
 from benchmark.suites.selection import suite as suite_named
-from benchmark.suites.verification import draw_cells
 from benchmark.suites.verification import verify as verified
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)

@@ -1,15 +1,13 @@
-"""The coverage table is what mapping and datasets say; a reason is given only where needed."""
+"""The coverage table is what mapping and datasets say."""
 
 from __future__ import annotations
 
 import csv
 from pathlib import Path
 
-import pytest
-
 import survey_data
 from benchmark import datasets
-from benchmark.datasets.coverage import REASONS, CoverageError, coverage
+from benchmark.datasets.coverage import coverage
 from benchmark.plan.combinations import scorable_plan
 from registry.resolution import resolve_all
 from registry.studies import facts
@@ -48,9 +46,9 @@ def test_every_pair_of_a_mapped_study_is_there_with_its_studies():
     assert found == mapped()
 
 
-def test_every_pair_is_simulated_or_has_a_reason_and_never_both():
+def test_every_pair_is_simulated():
     for pair in coverage().pairs:
-        assert bool(pair.datasets) != bool(pair.reason), pair
+        assert pair.datasets, pair
         for name in pair.datasets:
             preset = datasets.get(name)
             assert (preset.detector, preset.mask) == (pair.detector, pair.mask)
@@ -66,25 +64,7 @@ def test_all_detectors_and_all_masks_are_simulated():
     assert "10 of 10 detectors and 10" in found.sentence()
 
 
-def test_a_pair_without_data_set_and_reason_is_an_error():
-    simulated = {n: (datasets.get(n).detector, datasets.get(n).mask) for n in datasets.names()}
-    fewer = {name: pair for name, pair in simulated.items() if pair != ("PSD", "Single-Ap.")}
-    with pytest.raises(CoverageError, match=r"^PSD Single-Ap"):
-        coverage(fewer)
-    found = coverage(fewer, reasons={**REASONS, ("PSD", "Single-Ap."): "why not"})
-    (pair,) = (p for p in found.pairs if p.detector == "PSD")
-    assert (pair.datasets, pair.reason) == ((), "why not")
-
-
-def test_a_reason_that_is_not_needed_is_an_error():
-    with pytest.raises(CoverageError, match="PD Maskless"):
-        coverage(reasons={**REASONS, ("PD", "Maskless"): "forgotten"})
-    with pytest.raises(CoverageError, match="OI V-Slit"):
-        coverage(reasons={**REASONS, ("OI", "V-Slit"): "nobody asked"})
-
-
-def test_every_pair_that_a_study_has_is_simulated():
-    assert not REASONS
+def test_pairs_that_no_sensor_of_a_study_has_are_not_mapped():
     assert ("PDA", "Maskless") not in mapped()  # Post2013's sensors do not cross
     assert ("PVA", "N-Slit") not in mapped()
 

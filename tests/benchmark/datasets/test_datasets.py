@@ -7,6 +7,7 @@ import json
 import math
 import subprocess
 import sys
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,10 @@ import pytest
 
 from algorithms.contract import Observation
 from benchmark import datasets
+from benchmark.canonical import canonical_json
 from benchmark.datasets import Samples, UnknownDatasetError, samples_hash
 from benchmark.datasets.card import differences, merge
+from benchmark.datasets.parameters import describe
 from benchmark.simulator.sensors.frames import FrameSensor
 
 ROOT = Path(__file__).parents[3]
@@ -233,3 +236,47 @@ def test_spots_lie_whole_inside_their_windows_neither_dark_nor_saturated(conditi
     # one pixel in a hundred is hot at the end of life
     assert np.mean(lit == 2**sensor.detector.bits - 1) < (0.02 if condition == "aged" else 1e-9)
     assert np.mean(frames == 0) < 1e-3
+
+
+@dataclass(frozen=True)
+class Part:
+    size: float = 0.1 + 0.2
+    names: tuple[str, ...] = ("a",)
+    derived: int = field(init=False, default=7)
+
+
+def test_a_dataclass_names_its_type_and_tells_every_field() -> None:
+    assert describe(Part()) == {"type": "Part", "size": 0.1 + 0.2, "names": ["a"], "derived": 7}
+    assert describe({"part": Part(), 3: None}) == {"part": describe(Part()), "3": None}
+
+
+def test_parameters_are_exact_where_digests_forgive_the_last_bits() -> None:
+    nearly = Part(size=0.3)
+    assert describe(Part()) != describe(nearly)
+    assert canonical_json(Part()) == canonical_json(nearly) == '{"names":["a"],"size":0.3}'
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), np.float64("-inf")])
+def test_a_number_that_json_has_no_word_for_is_refused(value: float) -> None:
+    with pytest.raises(ValueError, match=r"parameters must be finite; got (nan|inf|-inf)"):
+        describe(Part(size=value))
+
+
+AREAS = ["cmos-single-aperture", "ccd-single-aperture", "cmos-slit", "cmos-encoded"]
+
+
+@pytest.mark.parametrize("name", AREAS)
+def test_an_aged_detector_is_darker_in_the_dark_by_what_its_condition_says(name: str) -> None:
+    """The same unit: pixels' own shares of the dark current stay, one in a hundred is hot."""
+    data = datasets.get(name)
+    new, old = (data.fixed_pattern(condition)["dark_e"] for condition in ("nominal", "aged"))
+    some = new > 0
+    growth = old[some] / new[some]
+    assert growth.min() == pytest.approx(20.0)
+    hot = growth > 20.0 * (1 + 1e-9)
+    count = growth.size
+    assert hot.mean() == pytest.approx(0.01, abs=4 * math.sqrt(0.01 / count))
+    # an exponential's mean, of n values within 4 / sqrt(n) of it
+    mean = np.mean(growth[hot] / 20.0 - 1.0)
+    assert mean == pytest.approx(20.0, rel=4 / math.sqrt(0.01 * count))
+    assert "20 times" in data.setups["aged"].description

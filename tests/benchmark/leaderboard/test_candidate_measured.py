@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from fake_atlas import Broken, Diodes, Framed, LeastSquares
 from benchmark.contract import ON_BENCH
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.candidate import Ranking, UnfitError, rank
+from benchmark.leaderboard.pages import to_html
 from benchmark.leaderboard.scope import UNITS
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
@@ -128,3 +130,26 @@ def test_an_algorithm_without_a_pipeline_is_refused(
     )
     with pytest.raises(UnfitError, match=said):
         ranked(name, Store(tmp_path / "none"), tmp_path / "work", parts)
+
+
+CUBE = "pd-maskless-cube"
+
+
+@pytest.mark.slow
+def test_a_model_of_the_record_has_its_published_numbers_among_all_others(tmp_path: Path) -> None:
+    record = Store()
+    found = rank("basic", CUBE, record, Store(tmp_path / "work"))
+    published = {
+        (row["extractor"], row["model"]): row
+        for row in record.rows()
+        if row["dataset"] == CUBE and row["condition"] == "nominal"
+    }
+    board = {(row["extractor"], row["model"]): row for row in found.rows}
+    assert board.keys() == published.keys()
+    assert {pair: row["rms_deg"] for pair, row in board.items()} == {
+        pair: row["rms_deg"] for pair, row in published.items()
+    }
+    assert {model for _, model in found.pipelines} >= {"basic"}
+    page = to_html(found.board, marked=found.pipelines, note=found.scope)
+    assert page.count('class="marked"') == sum(found.has(row) for row in found.rows) > 0
+    assert found.scope in html.unescape(page)

@@ -15,7 +15,7 @@ import pytest
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import cluster, schedule
+from benchmark.running import cluster, runner
 from benchmark.running.cluster import ClusterError
 from benchmark.running.runner import Summary, run, stale
 
@@ -81,7 +81,7 @@ def test_a_task_that_kills_every_worker_ends_the_run_and_the_next_does_what_is_m
 def test_a_worker_of_other_code_is_refused(
     scheduler: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(schedule, "code_of", lambda tasks: "not what a worker finds")
+    monkeypatch.setattr(runner, "code_of", lambda tasks: "not what a worker finds")
     with pytest.raises(ClusterError, match="other code for fake-"):
         measured(Store(tmp_path), scheduler=scheduler)
 

@@ -8,7 +8,7 @@ from typing import Any
 import fake_atlas
 import pytest
 
-from benchmark.running import schedule
+from benchmark.running import runner
 from benchmark.running.stages import Task
 
 
@@ -38,10 +38,10 @@ TASKS = [one for group in CONDITIONS for one in group]
 def test_a_piece_is_as_large_as_leaves_one_to_every_worker(
     workers: int, expected: list[list[Task]]
 ) -> None:
-    assert [list(one) for one in schedule.pieces(TASKS, workers)] == expected
+    assert [list(one) for one in runner.pieces(TASKS, workers)] == expected
 
 
 def test_units_stay_together_where_there_are_many_and_the_largest_is_first() -> None:
     small = [task(name, unit=unit) for name in "abcd" for unit in (1, 2)]
     large = [task("e", condition) for condition in ("noisy", "quiet")]
-    assert schedule.pieces([*small, *large], 2) == [tuple(large), *[(one,) for one in small]]
+    assert runner.pieces([*small, *large], 2) == [tuple(large), *[(one,) for one in small]]

@@ -13,8 +13,9 @@ from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
 from benchmark.results.store import Store
+from benchmark.running.experiment import draw_cells
 from benchmark.running.runner import run
-from benchmark.suites.verification import VerificationResult, draw_cells, verify
+from benchmark.suites.verification import VerificationResult, verify
 
 PARTS = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Choosy)
 CELLS = [Cell(f"d{n % 7}", "c", f"e{n % 11}", f"m{n}") for n in range(200)]
