@@ -41,23 +41,9 @@ VERDICTS = (*AGREEMENTS, NOT_JUDGED, NOT_MEASURED)
 class PropertyVerdict:
     """One property of one method.
 
-    Attributes
-    ----------
-    name
-        Of the property.
-    survey
-        2, 1 or 0, as the survey scores it.
-    measured
-        2, 1 or 0 by the definition; None where it is not judged or not measured.
-    value
-        The measured quantity; None where it is not measured or nothing was found.
-    extractor, series
-        Implementation and reference series or dataset the value comes from.
-    reason
-        Why it is not judged or not measured, or why nothing was found; empty where there is a
-        number that is judged.
-    judged
-        Whether the definition lets this survey's score be contradicted.
+    Survey and measurement score 2, 1 or 0; `measured` is None where it is not judged or not
+    measured, `value` also where nothing was found: `reason` says why. `judged`: the definition lets
+    this survey's score be contradicted.
     """
 
     name: str

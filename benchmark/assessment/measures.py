@@ -33,14 +33,8 @@ _LEVELS = (10.0, 200.0)
 class Quantity(NamedTuple):
     """A measured number; NaN where the method was run and does not do it.
 
-    Attributes
-    ----------
-    value
-        In the unit of its definition.
-    where
-        Series or dataset it comes from.
-    why
-        What a NaN stands for; empty where there is a number.
+    In the unit of its definition, with the series or data set it comes from and what a NaN stands
+    for.
     """
 
     value: float

@@ -50,18 +50,9 @@ _ROUNDS = 3
 class NetworkError:
     """Error of one method on a test split.
 
-    Attributes
-    ----------
-    question : str
-        What is asked, such as ``"orbits"``.
-    case : str
-        Condition, unit, seed or span.
-    method : str
-        Of the calibration.
-    rms_deg, p95_deg, max_deg : float
-        Of the angle to the Sun over lit samples that were answered.
-    answered : float
-        Share of them.
+    Of the angle to the Sun over lit samples that were answered, a share of all. The question is
+    such as ``"orbits"``, the case a condition, unit, seed or span; the method is that of the
+    calibration.
     """
 
     question: str

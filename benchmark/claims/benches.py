@@ -34,14 +34,7 @@ _TAKINGS = 7
 class ConditionView:
     """A data set under one condition as one unit of its sensor sees it, made when first asked for.
 
-    Parameters
-    ----------
-    preset
-        Of unit 0, or one that an experiment altered.
-    condition
-        Of the data set.
-    unit
-        Number of the unit.
+    The preset is of unit 0, or one that an experiment altered.
     """
 
     preset: Preset

@@ -29,14 +29,8 @@ Line = tuple[Sequence[float | str], Sequence[float]]
 class Trial:
     """What one trial measured.
 
-    Attributes
-    ----------
-    values
-        By the rules' names: the statistic of this trial; NaN where it has none.
-    lines
-        By what they show: points of the plot. The same places in every trial.
-    second
-        By the rules' names: the same statistic by the claim's second method.
+    `values` are the statistics by the rules' names, NaN where the trial has none; `second` the same
+    by the claim's second method; `lines` are points of the plot, at the same places in every trial.
     """
 
     values: Mapping[str, float]

@@ -29,15 +29,8 @@ CONFIDENCE = 0.95
 class Judgement:
     """A rule's statistic over the trials, and whether it holds.
 
-    Attributes
-    ----------
-    estimate, low, high
-        Mean over the trials (of their logarithms, taken back) and its 95 % interval; NaN where
-        fewer than `FEWEST_TRIALS` trials gave a number.
-    trials
-        Those that gave one.
-    result
-        Whether the rule holds.
+    Mean over the trials that gave a number (of their logarithms, taken back) and its 95 % interval;
+    NaN where these are fewer than `FEWEST_TRIALS`.
     """
 
     rule: Rule

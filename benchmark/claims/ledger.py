@@ -27,22 +27,10 @@ class LedgerError(ValueError):
 class Entry:
     """One claim, as it came out.
 
-    Attributes
-    ----------
-    claim
-        What is said, and what decides it.
-    verdict
-        By the trials and by whether they are the sentence's case; None where it was not measured.
-    review
-        The sentence, and whether the trial is its case.
-    former
-        Outcomes before its criteria or data were changed, oldest first.
-    rules, second
-        As measured, and by the second method; of the second one those rules that it measures.
-    explanation
-        Why it is not, or not wholly, so; empty where it is reproduced.
-    outcome
-        Numbers of every trial and lines of the plot; None where it was not measured.
+    The verdict is by the trials and by whether they are the sentence's case; None, as the outcome,
+    where it was not measured. `former` are outcomes before criteria or data were changed, oldest
+    first. `second` are those rules that the second method measures. The explanation says why it is
+    not, or not wholly, so; empty where it is reproduced.
     """
 
     claim: Claim

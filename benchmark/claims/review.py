@@ -28,24 +28,10 @@ _MATHS = (("^{\\circ}", "°"), ("^{-1/2}", "^-1/2"), ("4\\pi", "4π"), ("$", "")
 class Review:
     """What the second reading of a claim found.
 
-    Attributes
-    ----------
-    line, sentence
-        Of the survey's source, word for word.
-    context_line, context
-        Words that name the sensor where the sentence does not; empty for none.
-    detector, mask
-        Values of the taxonomy that these words allow, or "any".
-    trial
-        Data sets, or the module that draws the readings.
-    trial_detector, trial_mask
-        Those of the trial.
-    case
-        Whether the trial is the sentence's case.
-    verdict
-        As published.
-    reason
-        Of the case.
+    Line and sentence are of the survey's source, word for word; the context names the sensor where
+    the sentence does not. `detector`, `mask` are values of the taxonomy that these words allow, or
+    "any"; `trial` are data sets, or the module that draws the readings. The verdict is as
+    published, and the reason is of the case.
     """
 
     line: str

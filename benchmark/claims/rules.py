@@ -48,19 +48,9 @@ class RulesError(ValueError):
 class Rule:
     """One thing that has to hold for a claim.
 
-    Attributes
-    ----------
-    name
-        Unique within its claim.
-    statistic
-        What is computed in every trial, in words.
-    scale
-        How trials are averaged.
-    relation, limit, upper
-        The rule holds where the statistic is so related to the limit; `upper` is the other end of
-        ``within``, NaN elsewhere.
-    timed
-        Whether the statistic is a ratio of run times, which no other run repeats to the digit.
+    It holds where the statistic of the trials, averaged by `scale`, is so related to the limit;
+    `upper` is the other end of ``within``, NaN elsewhere. `timed`: the statistic is a ratio of run
+    times, which no other run repeats to the digit.
     """
 
     name: str
@@ -81,22 +71,10 @@ class Rule:
 class Claim:
     """One statement of the survey and how it is put to the test.
 
-    Attributes
-    ----------
-    id, section, study, statement, how_to_test
-        As `survey_data/claims.csv` has them; `study` is empty where the survey names none.
-    family
-        Folder of `benchmark.claims.experiments` with the experiment.
-    trials, replicate
-        How many, and what differs between them.
-    measured_on
-        Data, sensors and methods, in words.
-    x_label, y_label
-        Axes of the plot.
-    second
-        The other method that the outcome is checked by, in words; empty for none.
-    rules
-        All of them have to hold.
+    Id, section, study (empty where the survey names none), statement and test are as in
+    `survey_data/claims.csv`; `family` is the folder of `benchmark.claims.experiments` with the
+    experiment, `replicate` what differs between trials, `second` the other method that the outcome
+    is checked by, in words; empty for none. All rules have to hold.
     """
 
     id: str

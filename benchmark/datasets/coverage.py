@@ -33,12 +33,8 @@ class PairCoverage(JsonData):
 class Coverage(JsonData):
     """What the datasets cover of the taxonomy and of the mapped studies.
 
-    Attributes
-    ----------
-    pairs
-        Every pair that a study uses or a dataset simulates, in the taxonomy's order.
-    detectors, masks
-        By value of the taxonomy, the datasets that have it.
+    Every pair that a study uses or a dataset simulates, in the taxonomy's order; by value of the
+    taxonomy, the datasets that have it.
     """
 
     detectors: Mapping[str, tuple[str, ...]]

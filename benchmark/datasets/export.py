@@ -71,14 +71,7 @@ class ExportError(ValueError):
 class ExportResult:
     """What was written.
 
-    Attributes
-    ----------
-    directory
-        Where.
-    files
-        Paths in it, sorted.
-    card
-        As in ``card.json``.
+    Paths in the directory, sorted, and the card as in ``card.json``.
     """
 
     directory: Path

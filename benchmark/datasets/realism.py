@@ -32,16 +32,8 @@ class RealismError(ValueError):
 class HardwareMatch:
     """What a data set stands for.
 
-    Attributes
-    ----------
-    dataset
-        Its name.
-    sensors
-        The nearest built sensors; none for an idealisation.
-    idealisation
-        Why it stands for no built sensor; empty where it stands for one.
-    sentence
-        What explains a difference from their figures; empty where there is none to explain.
+    The nearest built sensors, or why it stands for none (`idealisation`), and a sentence that
+    explains a difference from their figures; empty where there is none to explain.
     """
 
     dataset: str

@@ -33,13 +33,8 @@ _CalibrationData = tuple[Floats, Floats, Mapping[str, NDArray[Any]] | None]
 class VariantErrors:
     """Errors of one pipeline on one data set, root mean square in degrees.
 
-    Attributes
-    ----------
-    errors_deg
-        By variant (`VARIANTS`); None where there is nothing of the kind, or the model refuses the
-        calibration. All over the same samples: observable ones that every variant answers.
-    judged
-        How many these are.
+    By variant (`VARIANTS`); None where there is nothing of the kind, or the model refuses the
+    calibration. All over the same `judged` samples: observable ones that every variant answers.
     """
 
     errors_deg: Mapping[str, float | None]

@@ -46,16 +46,8 @@ _WITHOUT: Mapping[str, str] = {
 class MainErrorSource:
     """Main error source of a pipeline.
 
-    Attributes
-    ----------
-    is_near_bound
-        Whether it is within `NEAR` of its bound.
-    parts_deg
-        What each part contributes, root mean square; parts that were not measured are left out.
-    leading_part
-        The part that contributes most.
-    sentence
-        In words, with the numbers.
+    `parts_deg` is what each part contributes, root mean square; parts that were not measured are
+    left out. Near its bound is what is within `NEAR` of it.
     """
 
     is_near_bound: bool

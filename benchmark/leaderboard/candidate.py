@@ -30,16 +30,9 @@ class UnfitError(LookupError):
 class Ranking:
     """The board of a data set's first condition with one algorithm on it.
 
-    Attributes
-    ----------
-    board
-        As `benchmark.leaderboard.board.build` gives it, of this data set and condition alone.
-    pipelines
-        Extractor and model of each pipeline with the algorithm.
-    measured
-        How many cells were measured now.
-    scope
-        A sentence that says on which units and benches these pipelines were scored.
+    The board is as `benchmark.leaderboard.board.build` gives it; `pipelines` are extractor and
+    model of each with the algorithm, `measured` counts cells measured now, and `scope` says on
+    which units and benches these pipelines were scored.
     """
 
     board: Mapping[str, Any]

@@ -60,18 +60,9 @@ KERNELS = (NATIVE, OLDER)
 class Difference:
     """One place where the committed record is not what it should be.
 
-    Attributes
-    ----------
-    file
-        Name of the file.
-    cell
-        What it is about: ``dataset/condition/extractor/model/column`` and the like.
-    committed
-        What stands there.
-    measured
-        What should.
-    kernels
-        With which it was measured; empty where nothing was.
+    `cell` is ``dataset/condition/extractor/model/column`` and the like, `committed` what stands
+    there, `measured` what should; `kernels` are those it was measured with, empty where nothing
+    was.
     """
 
     file: str

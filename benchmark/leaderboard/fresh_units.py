@@ -36,18 +36,9 @@ BEHIND = 5
 class FreshUnitResult:
     """How the first group of one board did on fresh units.
 
-    Attributes
-    ----------
-    dataset
-        Of the board.
-    pipelines, first
-        How many are on the board, and how many in its first group.
-    leader
-        Chosen on the board's own units.
-    holds
-        Whether it is in the first group on the fresh units, by the same test.
-    over
-        Geometric mean there of its errors over those of the first there.
+    How many pipelines are on the board and in its first group; its leader, chosen on the board's
+    own units; whether that is in the first group on the fresh ones by the same test, and the
+    geometric mean there of its errors over those of the first there.
     """
 
     dataset: str

@@ -48,22 +48,9 @@ _STATISTICS: Mapping[str, tuple[str, str]] = MappingProxyType(
 class Headline:
     """A number that a study publishes, beside ours.
 
-    Attributes
-    ----------
-    study
-        Its key.
-    published
-        The number, and which statistic it is.
-    place
-        The score that stands beside it; None where nothing that runs for the study has one.
-    our_deg
-        The same statistic of the own error on the standard unit; of a precision, one axis.
-    our_statistic
-        The name of that statistic.
-    availability
-        Share of the samples that are answered.
-    difference
-        How sensor and noise differ; empty where nothing is said.
+    `place` is the score that stands beside it; None where nothing that runs for the study has one.
+    `our_deg` is the same statistic of the own error on the standard unit, of a precision on one
+    axis. `difference` says how sensor and noise differ; empty where nothing is said.
     """
 
     study: str

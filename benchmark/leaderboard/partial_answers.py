@@ -19,14 +19,7 @@ Of = TypeVar("Of")
 class PartialAnswer(Generic[Of]):
     """Error of a pipeline below the availability limit, over the samples it answers.
 
-    Attributes
-    ----------
-    error_deg
-        RMS error over the answered samples.
-    availability
-        Share of the samples that are answered.
-    subject
-        The pipeline, or its row in a table.
+    RMS error over the answered samples, their share, and the pipeline or its row in a table.
     """
 
     error_deg: float

@@ -37,15 +37,10 @@ Flags = NDArray[np.bool_]
 class Floor:
     """Where the curves of the units of a sensor end.
 
-    Attributes
-    ----------
-    error_deg, low_deg, high_deg
-        Of each unit (U,): the floor, and the range of nine in ten floors of draws drawn anew, so
-        that the spread between draws is in it, and the spread between units is not.
-    exponent, misfit
-        Of the law: b, and how far it misses the errors, relative; None where none was fitted.
-    is_fitted
-        Whether it is the law's. Otherwise it is the error with all poses, without a range.
+    Of each unit (U,) the floor, and the range of nine in ten floors of draws drawn anew, so that
+    the spread between draws is in it, and the spread between units is not. `exponent` is b of the
+    law, `misfit` how far it misses the errors, relative. Where it is not fitted, the floor is the
+    error with all poses, without a range.
     """
 
     error_deg: tuple[float, ...]

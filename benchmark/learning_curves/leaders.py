@@ -25,12 +25,7 @@ _SHARED = ("rms_all_answers_deg", "median_deg", "max_deg", "availability")
 class Leader:
     """One pipeline of a data set's board that leads.
 
-    Attributes
-    ----------
-    dataset, condition, extractor, model
-        Names.
-    place
-        Among the leaders of its data set, from 1.
+    `place` is that among the leaders of its data set, from 1.
     """
 
     dataset: str

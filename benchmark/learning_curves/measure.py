@@ -40,20 +40,10 @@ _SPLITS = ("calibration", "test")
 class CurveTask:
     """A data set's leaders, in order, with what they are made of.
 
-    Attributes
-    ----------
-    preset
-        Of unit 0.
-    leaders
-        Of one condition of it.
-    extractors, models
-        By name, those that the leaders name.
-    all_observable
-        Whether the direction is known to be observable from every test sample.
-    bounds_deg
-        Cramer-Rao bound of each leader's score, root mean square.
-    bench_deg
-        Fixed error of the standard bench's directions, root mean square; None where none is pinned.
+    The preset is of unit 0, the leaders are of one condition of it. `all_observable`: the direction
+    is observable from every test sample. `bounds_deg` is the bound of each leader's score,
+    `bench_deg` the fixed error of the standard bench's directions, None where none is pinned: root
+    mean squares.
     """
 
     preset: Preset
@@ -69,18 +59,9 @@ class CurveTask:
 class CurveErrors:
     """Errors of one pipeline by unit, draw and size.
 
-    Attributes
-    ----------
-    leader
-        Which pipeline.
-    sizes
-        Numbers of poses (S,), the last all of them.
-    in_order
-        Whether the poses are a time series.
-    rms_deg, availability
-        (U, D, S); NaN where the model refused the poses. All draws share the last size.
-    refusals
-        Reasons (U, D, S), empty where there is an error.
+    `sizes` are numbers of poses (S,), the last all of them; errors and availability (U, D, S) are
+    NaN, and refusals not empty, where the model refused the poses. All draws share the last size.
+    `in_order`: the poses are a time series.
     """
 
     leader: Leader

@@ -47,12 +47,7 @@ def _everything(_what: object) -> bool:
 class Record:
     """Numbers by what they are of, each with the key of the components it was measured with.
 
-    Attributes
-    ----------
-    scores, pins
-        All that is known, journal included.
-    errors
-        What the journal holds sample by sample; the rest stays on disk.
+    `errors` is what the journal holds sample by sample; the rest stays on disk.
     """
 
     def __init__(self, store: Store) -> None:

@@ -25,18 +25,8 @@ C = TypeVar("C")
 class RowFile(Generic[C]):
     """How the rows of one experiment are written and read.
 
-    Attributes
-    ----------
-    name
-        Of the file, in the folder of a record.
-    listed
-        Name of the list that holds the rows.
-    schema
-        Layout of a row; raised when a member changes its meaning.
-    cell_of
-        Returns the cell that a row is of.
-    row
-        What a row is, as a type that Pydantic checks.
+    A file in the folder of a record with one list of rows; the schema is raised when a member
+    changes its meaning. `row` is what a row is, as a type that Pydantic checks.
     """
 
     name: str
@@ -87,20 +77,8 @@ class TableFile(Generic[C]):
     What all rows of a group share stands once, in a file of JSON beside the table: a change of
     code that leaves the numbers as they are is a change of a few lines.
 
-    Attributes
-    ----------
-    name
-        Of the table, in the folder of a record; the file beside it ends in ``.json``.
-    columns
-        How a cell of each column is read.
-    shared
-        What stands once a group, ``key`` among it.
-    cell_of
-        Returns the cell that a row is of.
-    group_of
-        Returns the group that a row is of.
-    place_of
-        Returns what rows are sorted by.
+    The file beside the table ends in ``.json``; `shared` is what stands once a group, ``key`` among
+    it. `place_of` returns what rows are sorted by.
     """
 
     name: str

@@ -165,15 +165,7 @@ class Directions:
 
 
 class SampleErrors:
-    """Errors that one run measures, collected to be written beside the record.
-
-    Attributes
-    ----------
-    cells
-        Errors by cell.
-    directions
-        Samples by data set.
-    """
+    """Errors that one run measures, collected to be written beside the record."""
 
     def __init__(self) -> None:
         self.cells: dict[Cell, CellErrors] = {}

@@ -56,12 +56,7 @@ def limit_bytes() -> int:
 class StageFiles:
     """Results by key in a directory that several processes may use.
 
-    Attributes
-    ----------
-    directory
-        Made at the first result.
-    limit
-        Bytes that all may take; 0 keeps nothing.
+    `limit`: bytes that all may take; 0 keeps nothing.
     """
 
     directory: Path

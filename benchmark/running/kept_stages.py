@@ -25,14 +25,8 @@ FEATURES, PREDICTIONS = "features", "predictions"
 class KeptStages:
     """Stages kept beside stores, by what they are made with.
 
-    Attributes
-    ----------
-    files
-        Where they are put.
-    components
-        Digests of the code and parameters as they are.
-    others
-        Where they are read, too.
+    `files` is where they are put, `others` where they are read, too; `components` are digests of
+    the code and parameters as they are.
     """
 
     files: StageFiles
@@ -88,16 +82,8 @@ _STAGE_OF = {TRUTH: DATA}
 class StageCounts:
     """How much is to be done for some cells: where a stage is kept, none before it is.
 
-    Attributes
-    ----------
-    data
-        Data sets to generate, under a condition by a unit each.
-    features
-        Of these, what extractors are to look at.
-    predictions
-        Models to fit.
-    scores
-        Scores to compute: all cells.
+    Data sets to generate under a condition by a unit each, what extractors are to look at of them,
+    models to fit, and scores to compute: of all cells.
     """
 
     data: int

@@ -38,10 +38,7 @@ Condition = tuple[str, str]  # (dataset, condition)
 class UnversionedChangeError(ValueError):
     """Data or bounds have changed, and the versions of their datasets have not.
 
-    Attributes
-    ----------
-    changes
-        What changed: one line a split, by dataset.
+    `changes` has a line for each split that changed, by dataset.
     """
 
     def __init__(self, changes: Mapping[str, list[str]]) -> None:
@@ -57,16 +54,8 @@ class UnversionedChangeError(ValueError):
 class PinResult:
     """What was pinned.
 
-    Attributes
-    ----------
-    store
-        Where.
-    kept, renewed
-        How many conditions were pinned for the code as it is, how many are now.
-    warnings
-        Data that cannot be generated.
-    seconds
-        How long it took.
+    `kept`, `renewed`: conditions that were pinned for the code as it is, and that are now;
+    `warnings` name data that cannot be generated.
     """
 
     store: Path

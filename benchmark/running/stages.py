@@ -23,15 +23,8 @@ if TYPE_CHECKING:
 class Task:
     """One dataset, condition, unit and extractor with the models to score behind it.
 
-    Attributes
-    ----------
-    preset
-        Of unit 0.
-    unit
-        Of the sensor.
-    all_observable
-        Whether the direction is known to be observable from every test sample, so that another
-        unit than the standard one needs no bound.
+    The preset is of unit 0. `all_observable`: the direction is known to be observable from every
+    test sample, so that another unit than the standard one needs no bound.
     """
 
     preset: Preset

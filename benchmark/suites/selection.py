@@ -27,13 +27,8 @@ NOT_QUICK = frozenset({"cmos-encoded-sizes", "cmos-multi-aperture"})
 class Suite:
     """A named selection of cells.
 
-    Attributes
-    ----------
-    name, what
-        Its name, and in a few words what it holds.
-    select
-        From the scores that are known and what is installed to its cells, in order. More scores
-        may select more: what is worth measuring can depend on what was measured.
+    `select` goes from the scores that are known and what is installed to its cells, in order. More
+    scores may select more: what is worth measuring can depend on what was measured.
     """
 
     name: str

@@ -22,14 +22,7 @@ from files.atomic import temporary_directory
 class TidyResult:
     """What was dropped.
 
-    Attributes
-    ----------
-    scores, pins
-        How many scores and pinned splits.
-    kept
-        Scores that stay.
-    freed
-        Bytes.
+    Scores and pinned splits that went, scores that stay, and bytes that were freed.
     """
 
     scores: int

@@ -18,15 +18,8 @@ from files.atomic import temporary_directory
 class VerificationResult:
     """What came of measuring cells again.
 
-    Attributes
-    ----------
-    cells
-        That were, in order.
-    alike
-        How many of them have every digit of the record.
-    differences
-        Where the record does not hold: beyond what `benchmark.leaderboard.check` allows another
-        machine, or a score where there was none.
+    `alike`: how many cells have every digit of the record; `differences`: beyond what
+    `benchmark.leaderboard.check` allows another machine, or a score where there was none.
     """
 
     cells: tuple[Cell, ...]

@@ -22,14 +22,8 @@ from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Sample, Serie
 class SweepTask:
     """What sees the observations of one point.
 
-    Attributes
-    ----------
-    extractors
-        By point; all of the same series and setting.
-    setting
-        Of the point; None where nothing is measured.
-    refused
-        Why a method is not measured.
+    Extractors by point, all of the same series and setting (None where nothing is measured), and
+    why others are refused.
     """
 
     extractors: Mapping[Point, type[Extractor]]

@@ -18,16 +18,8 @@ Pair = Mapping[str, Any]
 class Estimate:
     """A number with its 95 % interval.
 
-    Attributes
-    ----------
-    name
-        The quantity estimated.
-    kind
-        ``median`` (interval by order statistics) or ``share`` (interval by Clopper and Pearson).
-    value, low, high
-        Infinite where the data do not bound it.
-    n, of
-        How many units it is the median or share of, and what they are.
+    A ``median`` (interval by order statistics) or ``share`` (by Clopper and Pearson) of `n` units,
+    `of` what they are; infinite where the data do not bound it.
     """
 
     name: str
@@ -66,18 +58,8 @@ class Estimate:
 class Finding:
     """What the record shows.
 
-    Attributes
-    ----------
-    key
-        By which the command knows it.
-    title, text
-        The sentence in bold, and what follows it.
-    estimates
-        The numbers in the text.
-    left_out
-        The pairs excluded, with their number and the reason.
-    pairs
-        A row per pair that the estimates are of.
+    A sentence in bold, the text behind it with its estimates, the pairs excluded with their number
+    and reason, and a row per pair that the estimates are of.
     """
 
     key: str

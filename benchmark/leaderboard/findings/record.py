@@ -24,17 +24,9 @@ ARRAYS = frozenset({"CCD", "CMOS", "PDA", "Event"})
 class FindingsRecord:
     """Scores under the first condition of each data set, by cell.
 
-    Attributes
-    ----------
-    rows
-        Of the standard unit; those that answer fewer than 95 % of the samples, or have no error,
-        are not among them.
-    errors, on_bench
-        Own errors, and errors on drawn benches, of every unit.
-    bench_deg
-        Error of the directions of the standard bench, root mean square, by data set.
-    unavailable
-        Cells that are left out of `rows`.
+    `rows` are of the standard unit, without the `unavailable`: those that answer fewer than 95 % of
+    the samples, or have no error. Own errors, and errors on drawn benches, are of every unit;
+    `bench_deg` is the error of the standard bench's directions, root mean square, by data set.
     """
 
     rows: Mapping[Cell, Row]

@@ -75,5 +75,5 @@ def test_an_interrupted_call_leaves_whole_data_sets_and_the_next_goes_on(
     assert set(found.rows) == pipelines(TWO)
     assert {place: found.rows[place] for place in before} == before
     assert found.machine is not None
-    assert (found.machine.processor, found.machine.also_on) == ("first", ("second",))
+    assert (found.machine.processor, found.machine.also_on) == ("first", ["second"])
     assert times.update(tmp_path, silent, parts=TWO, again=True) == 4

@@ -19,17 +19,8 @@ class PartlyFixedModel(ParametricModel):
 
     The others keep the values that the model's own fit starts from, which are its drawing's.
 
-    Parameters
-    ----------
-    model : ParametricModel
-        Made for the sensor, unfitted.
-    free : tuple of str
-        Of the model's parameters; none leaves the drawing.
-
-    Raises
-    ------
-    ValueError
-        For a name that is no parameter of the model.
+    `model` is made for the sensor, unfitted; `free` are names of its parameters, none leaves the
+    drawing. ValueError for a name that is no parameter of the model.
     """
 
     about: ClassVar[Any] = None  # the model's, set in every instance

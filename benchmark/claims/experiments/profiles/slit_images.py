@@ -31,12 +31,8 @@ _MIDDLE_PX = (_LENGTH_PX - 1) / 2.0
 class SlitImages:
     """What two arrays see behind slits.
 
-    Attributes
-    ----------
-    places_px
-        Of the slits from the mask's middle.
-    pitch
-        Of the pixels, in those of the design: a power of two from 1/4 to 4.
+    Places are those of the slits from the mask's middle; the pitch is that of the pixels, in those
+    of the design: a power of two from 1/4 to 4.
     """
 
     places_px: tuple[float, ...] = (0.0,)
