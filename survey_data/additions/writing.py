@@ -7,7 +7,6 @@ import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from files.csv_writing import csv_text
 from survey_data.additions.offered import (
     Addition,
     Fault,
@@ -17,18 +16,14 @@ from survey_data.additions.offered import (
     read_addition,
     read_toml,
 )
-from survey_data.descriptor import DATA_DIRECTORY, column_types
-from survey_data.editions import FOLDER
+from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.editions import EXTENSION_TABLES, FOLDER
 from survey_data.importing.bibliography import SUFFIXES, Entry, read_bibliography
-from survey_data.importing.writing import locked_tables, require_valid, rows_of, write_valid
+from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.nearest import one_of
 from survey_data.problems import SurveyImportError
-from survey_data.texts import load_texts
+from survey_data.texts import Rows, load_texts
 
-TABLES = ("studies", "attributes", "roles", "architectures", "names")
-"""Tables of the extension that a study has rows of, without their prefix."""
-
-_VERIFICATIONS = "verifications"
 _KEY = re.compile(r"[A-Za-z]+([0-9]{4})[a-z]?")
 
 
@@ -69,47 +64,38 @@ def read_study(
 
 def add_study(
     addition: Addition, directory: Path = DATA_DIRECTORY, *, apply: bool = False
-) -> dict[str, str]:
+) -> list[str]:
     """Add a study to the extension of `directory`, whole or not at all.
 
-    Returns the tables that change, by name, with their new text; without `apply` nothing is
-    written, and the tables are only checked. SurveyImportError where the key is taken, or the
-    tables would not be valid or cannot be written.
+    Returns the names of the tables that change; without `apply` nothing is written, and the tables
+    are only checked. SurveyImportError where the key is taken, or the tables would not be valid or
+    cannot be written.
     """
 
-    def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
-        if any(row[0] == addition.key for row in rows["studies"]):
+    def changed(held: Mapping[str, Rows]) -> dict[str, Rows]:
+        if any(row["key"] == addition.key for row in held["extension_studies"]):
             raise SurveyImportError(f"a study with the key {addition.key} was added already")
-        found = {}
-        for name, own in addition.rows.items():
-            header = column_types(f"extension_{name}")
-            new = [[row[column] for column in header] for row in own]
-            if new:
-                found[name] = _sorted(rows[name] + new)
-        return found
+        new = {f"extension_{name}": rows for name, rows in addition.rows.items() if rows}
+        return {table: _sorted([*held[table], *rows]) for table, rows in new.items()}
 
     return _change(directory, changed, apply=apply)
 
 
-def remove_study(
-    key: str, directory: Path = DATA_DIRECTORY, *, apply: bool = False
-) -> dict[str, str]:
+def remove_study(key: str, directory: Path = DATA_DIRECTORY, *, apply: bool = False) -> list[str]:
     """Take a study out of the extension, with its confirmations; the survey's own stay.
 
     Returns and raises as `add_study`; UnknownStudyError where the extension has no such study.
     """
     _require_later(key, directory)
 
-    def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
-        kept = {name: [row for row in found if row[0] != key] for name, found in rows.items()}
-        return {name: found for name, found in kept.items() if found != rows[name]}
+    def changed(held: Mapping[str, Rows]) -> dict[str, Rows]:
+        kept = {table: [row for row in rows if _study(row) != key] for table, rows in held.items()}
+        return {table: rows for table, rows in kept.items() if len(rows) < len(held[table])}
 
     return _change(directory, changed, apply=apply)
 
 
-def verify_study(
-    row: Row, directory: Path = DATA_DIRECTORY, *, apply: bool = False
-) -> dict[str, str]:
+def verify_study(row: Row, directory: Path = DATA_DIRECTORY, *, apply: bool = False) -> list[str]:
     """Note that somebody confirmed what is said of a study, of either edition.
 
     `row` has the columns of the table of verifications; the rest as `add_study`.
@@ -118,12 +104,11 @@ def verify_study(
     keys = [found["key"] for found in (*tables.studies, *tables.extension_studies)]
     if row["study"] not in keys:
         raise UnknownStudyError(f"study {row['study']!r}: {one_of(row['study'], keys)}")
-    new = [row[column] for column in column_types(_VERIFICATIONS)]
 
-    def changed(rows: Mapping[str, list[list[str]]]) -> dict[str, list[list[str]]]:
-        if new in rows[_VERIFICATIONS]:
+    def changed(held: Mapping[str, Rows]) -> dict[str, Rows]:
+        if row in held["verifications"]:
             raise SurveyImportError(f"this confirmation of {row['study']} stands already")
-        return {_VERIFICATIONS: _sorted([*rows[_VERIFICATIONS], new])}
+        return {"verifications": _sorted([*held["verifications"], row])}
 
     return _change(directory, changed, apply=apply)
 
@@ -141,32 +126,22 @@ def _require_later(key: str, directory: Path) -> None:
 
 
 def _change(
-    folder: Path,
-    changed: Callable[[Mapping[str, list[list[str]]]], Mapping[str, list[list[str]]]],
-    *,
-    apply: bool,
-) -> dict[str, str]:
-    """Change tables of the extension that nobody else writes meanwhile."""
+    folder: Path, changed: Callable[[Mapping[str, Rows]], Mapping[str, Rows]], *, apply: bool
+) -> list[str]:
+    """Change tables of the extension that nobody else writes meanwhile; return their names."""
     with locked_tables(folder):
-        rows = {name: rows_of(folder, _table(name))[1] for name in (*TABLES, _VERIFICATIONS)}
-        texts = {
-            _table(name): csv_text(list(column_types(_table(name))), found)
-            for name, found in changed(rows).items()
-        }
-        if apply:
-            write_valid(folder, texts, together=FOLDER)
-        else:
-            require_valid(folder, texts)
-    return texts
+        tables = changed(vars(load_texts(EXTENSION_TABLES, folder)))
+        write_valid(folder, tables, together=FOLDER, apply=apply)
+    return list(tables)
 
 
-def _table(name: str) -> str:
-    return name if name == _VERIFICATIONS else f"extension_{name}"
+def _study(row: Row) -> str:
+    return row["key"] if "key" in row else row["study"]
 
 
-def _sorted(rows: Sequence[list[str]]) -> list[list[str]]:
+def _sorted(rows: Rows) -> Rows:
     """Order rows by study; those of a study stay as they came."""
-    return sorted(rows, key=lambda row: row[0])
+    return sorted(rows, key=_study)
 
 
 def read_publications(path: Path) -> tuple[dict[str, str], ...]:

@@ -9,14 +9,14 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from files.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.bibliography import Entry, read_bibliography
 from survey_data.importing.values import normalise, similarity
-from survey_data.importing.writing import locked_tables, rows_of, write_valid
+from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.sources import fault
 from survey_data.tables import SurveyTables, load
+from survey_data.texts import load_texts
 
 _TABLE = "studies"
 _COLUMNS = ("title", "authors", "venue", "type", "doi", "url")
@@ -110,7 +110,7 @@ def import_bibliography(
         plan = _plan(load(folder), entries, Path(path).name, frozenset(replace_studies))
         if not apply or not (plan.edits or plan.settled):
             return plan
-        write_valid(folder, {_TABLE: _edit(folder, plan)})
+        write_valid(folder, {_TABLE: _edited(folder, plan)})
         return plan.model_copy(update={"written": len(plan.edits)})
 
 
@@ -212,19 +212,15 @@ def _surnames(authors: str) -> list[str]:
     return [normalise(name).split()[-1] for name in authors.split(";") if normalise(name)]
 
 
-def _edit(folder: Path, plan: BibliographyPlan) -> str:
-    """Return the text of studies.csv with the plan's cells in it."""
-    header, rows = rows_of(folder, _TABLE)
-    at = {name: index for index, name in enumerate(header)}
-    by_key = {row[at["key"]]: row for row in rows}
+def _edited(folder: Path, plan: BibliographyPlan) -> list[dict[str, str]]:
+    """Return the rows of studies.csv with the plan's cells in them."""
+    rows = {row["key"]: dict(row) for row in load_texts((_TABLE,), folder).studies}
     for edit in plan.edits:
-        by_key[edit.study][at[edit.column]] = edit.theirs
+        rows[edit.study][edit.column] = edit.theirs
     years = {d.study: f"which says {d.theirs}" for d in plan.differences if d.kind == "kept"}
     for key in plan.settled:
-        row = by_key[key]
-        said = (
-            f"identified by the survey's bibliography ({plan.source}), {row[at['identity']]} before"
-        )
-        row[at["note"]] = "; ".join(filter(None, (row[at["note"]], said, years.get(key))))
-        row[at["identity"]] = "confirmed"
-    return csv_text(header, rows)
+        row = rows[key]
+        said = f"identified by the survey's bibliography ({plan.source}), {row['identity']} before"
+        row["note"] = "; ".join(filter(None, (row["note"], said, years.get(key))))
+        row["identity"] = "confirmed"
+    return list(rows.values())

@@ -12,16 +12,16 @@ from typing import Literal, NamedTuple
 import pandas as pd
 from pydantic import BaseModel
 
-from files.csv_writing import csv_text
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.columns import ColumnMapping, match_columns
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError
 from survey_data.importing.table_reader import read_table
 from survey_data.importing.values import UnreadableValueError, ValueMatch, ValueReader, column_unit
-from survey_data.importing.writing import locked_tables, rows_of, write_valid
+from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.problems import Problem, SurveyImportError
 from survey_data.reported import KIND_OF, UNSPECIFIED
 from survey_data.tables import RESTING, SurveyTables, load
+from survey_data.texts import Rows, load_texts
 
 _TABLE = "attributes"
 AUTHORS_BASIS = "authors-table"
@@ -355,15 +355,22 @@ def _write(folder: Path, tables: SurveyTables, plan: ImportPlan) -> ImportPlan:
     _require_readable(plan)
     if not plan.edits:
         return plan
-    texts = {_TABLE: _edit(folder, plan, _authors_doi(tables))}
-    counts: dict[str, int] = {}
-    for table in sorted(RESTING):
+    held = load_texts((_TABLE, "counts", *RESTING), folder)
+    counts = [dict(row) for row in held.counts]
+    changed: dict[str, Rows] = {_TABLE: _edited(held.attributes, plan, _authors_doi(tables))}
+    for table, names in RESTING.items():
         gone = {(entry.study, entry.value) for entry in plan.withdrawn if entry.table == table}
         if gone:
-            texts[table], counts[table] = _without(folder, table, gone)
-    if counts:
-        texts["counts"] = _count(folder, counts)
-    write_valid(folder, texts)
+            changed[table] = [
+                row
+                for row in getattr(held, table)
+                if (row["study"], " + ".join(row[name] for name in names)) not in gone
+            ]
+            for row in counts:
+                if row["table"] == table and not row["column"]:
+                    row["held"] = str(len(changed[table]))
+            changed["counts"] = counts
+    write_valid(folder, changed)
     return plan.model_copy(update={"written": len(plan.edits)})
 
 
@@ -372,48 +379,27 @@ def _authors_doi(tables: SurveyTables) -> str:
     return str(references.loc[references["role"] == "dataset", "doi"].iloc[0])
 
 
-def _without(folder: Path, table: str, gone: set[tuple[str, str]]) -> tuple[str, int]:
-    """Return a table without rows, given by study and value or pair, and how many are left."""
-    header, rows = rows_of(folder, table)
-    places = [header.index(name) for name in RESTING[table]]
-    kept = [c for c in rows if (c[0], " + ".join(c[at] for at in places)) not in gone]
-    return csv_text(header, kept), len(kept)
-
-
-def _count(folder: Path, counts: Mapping[str, int]) -> str:
-    """Return the text of counts.csv with the rows that tables have now."""
-    header, rows = rows_of(folder, "counts")
-    named, column, held = map(header.index, ("table", "column", "held"))
-    for cells in rows:
-        if not cells[column] and cells[named] in counts:
-            cells[held] = str(counts[cells[named]])
-    return csv_text(header, rows)
-
-
-def _edit(folder: Path, plan: ImportPlan, doi: str) -> str:
-    """Return the text of attributes.csv with the plan's cells replaced where they stand."""
-    header, rows = rows_of(folder, _TABLE)
-    held: dict[str, dict[str, list[list[str]]]] = {}
-    for cells in rows:
-        held.setdefault(cells[0], {}).setdefault(cells[1], []).append(cells)
+def _edited(rows: Rows, plan: ImportPlan, doi: str) -> list[Mapping[str, str]]:
+    """Return the rows of attributes.csv with the plan's cells replaced where they stand."""
+    held: dict[str, dict[str, list[Mapping[str, str]]]] = {}
+    for row in rows:
+        held.setdefault(row["study"], {}).setdefault(row["attribute"], []).append(row)
     for edit in plan.edits:
         of_study = held[edit.study]
-        of_study[edit.attribute] = _rows_of(edit, of_study.get(edit.attribute, []), doi)
-    edited = [row for study in held.values() for cell in study.values() for row in cell]
-    return csv_text(header, edited)
+        of_study[edit.attribute] = list(_rows_of(edit, of_study.get(edit.attribute, []), doi))
+    return [row for study in held.values() for cell in study.values() for row in cell]
 
 
-def _rows_of(edit: Difference, replaced: list[list[str]], doi: str) -> list[list[str]]:
+def _rows_of(edit: Difference, replaced: Rows, doi: str) -> Iterator[dict[str, str]]:
+    taken = {"basis": AUTHORS_BASIS, "source": doi}
     if edit.kind == "confirmed":
-        return [
-            [study, attribute, value, AUTHORS_BASIS, doi, _note(f"also {basis}", source, note)]
-            for study, attribute, value, basis, source, note in replaced
-        ]
+        for row in replaced:
+            source = f" ({row['source']})" if row["source"] else ""
+            said = f"also {row['basis']}{source}"
+            yield {**row, **taken, "note": ": ".join(filter(None, (said, row["note"])))}
+        return
     before = ", ".join(edit.ours)
     note = f"before: {before} ({edit.basis})" if before else ""
-    return [[edit.study, edit.attribute, value, AUTHORS_BASIS, doi, note] for value in edit.theirs]
-
-
-def _note(basis: str, source: str, note: str) -> str:
-    said = f"{basis} ({source})" if source else basis
-    return f"{said}: {note}" if note else said
+    for value in edit.theirs:
+        at = {"study": edit.study, "attribute": edit.attribute, "value": value}
+        yield {**at, **taken, "note": note}

@@ -8,13 +8,14 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from files.atomic import UnreplaceableError, restore, temporary_directory
+from files.csv_writing import csv_text
 from files.locks import wait_for_lock
 from files.manifest import write_recorded
 from files.reading import FileRefusedError, read_bytes
 from survey_data.descriptor import DESCRIPTOR_FILE, column_types, file_name, table_names
 from survey_data.editions import FOLDER
 from survey_data.problems import SurveyImportError
-from survey_data.table_records import read_records
+from survey_data.texts import Rows
 from survey_data.validation.validate import validate
 
 
@@ -36,12 +37,6 @@ def offered_text(path: Path, largest: int) -> str:
         raise SurveyImportError(f"{path.name} is not UTF-8 text") from error
 
 
-def rows_of(folder: Path, table: str) -> tuple[list[str], list[list[str]]]:
-    """Return the columns of one of our tables, and its rows as text."""
-    header = list(column_types(table))
-    return header, [cells for _, cells in read_records(folder / file_name(table), header).rows]
-
-
 @contextmanager
 def locked_tables(folder: Path) -> Iterator[None]:
     """Hold the tables from reading to writing; who else would write waits, and reads what is new.
@@ -58,15 +53,22 @@ def locked_tables(folder: Path) -> Iterator[None]:
         yield
 
 
-def write_valid(folder: Path, texts: Mapping[str, str], *, together: str | None = None) -> None:
-    """Replace tables, by name, by texts; those `together` in a sub-folder change in one step.
+def write_valid(
+    folder: Path, tables: Mapping[str, Rows], *, together: str | None = None, apply: bool = True
+) -> None:
+    """Replace tables, by name, by rows; those `together` in a sub-folder change in one step.
 
-    SurveyImportError where they would be invalid or cannot be written; nothing has been written.
+    Without `apply` they are only checked. SurveyImportError where they would be invalid or cannot
+    be written; nothing has been written.
     """
+    texts = {}
+    for table, rows in tables.items():
+        columns = list(column_types(table))
+        texts[file_name(table)] = csv_text(columns, ([row[c] for c in columns] for row in rows))
     try:
-        require_valid(folder, texts)
-        contents = {file_name(table): text for table, text in texts.items()}
-        write_recorded(folder, contents, together=together)
+        _require_valid(folder, texts)
+        if apply:
+            write_recorded(folder, texts, together=together)
     except (FileRefusedError, UnreplaceableError) as error:
         raise SurveyImportError(str(error)) from error
     except OSError as error:
@@ -77,14 +79,14 @@ def _unwritable(folder: Path, error: OSError) -> SurveyImportError:
     return SurveyImportError(f"cannot write in {folder}: {error.strerror or error}")
 
 
-def require_valid(folder: Path, texts: Mapping[str, str]) -> None:
-    """Raise SurveyImportError where the tables would not be valid with these texts."""
+def _require_valid(folder: Path, texts: Mapping[str, str]) -> None:
+    """Raise SurveyImportError where the tables would not be valid with these files."""
     with temporary_directory() as scratch:
         for name in (DESCRIPTOR_FILE, *map(file_name, table_names())):
             (scratch / name).parent.mkdir(exist_ok=True)
             shutil.copyfile(folder / name, scratch / name)
-        for table, text in texts.items():
-            (scratch / file_name(table)).write_text(text, encoding="utf-8", newline="")
+        for name, text in texts.items():
+            (scratch / name).write_text(text, encoding="utf-8", newline="")
         problems = tuple(validate(scratch))
     if problems:
         message = f"the tables would not be valid: {problems[0]}"

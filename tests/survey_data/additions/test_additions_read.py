@@ -13,12 +13,13 @@ import pytest
 
 import survey_data
 from survey_data.additions.offered import Addition, FaultsError, Row, parse_toml, read_addition
-from survey_data.additions.writing import TABLES, read_study
+from survey_data.additions.writing import read_study
 from survey_data.problems import SurveyImportError
 from survey_data.texts import load_texts
 from tests.survey_data.additions.offered_study import content, offered
 
 PLACE = ("study", "attribute")
+TABLES = ("studies", "attributes", "roles", "architectures", "names")
 #: The escapes of a TOML string are those of JSON.
 quoted = partial(json.dumps, ensure_ascii=False)
 
