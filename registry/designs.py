@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from registry.mapping.advice import Advice
+from registry.fidelity.particulars import Advice
 from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Taxonomy

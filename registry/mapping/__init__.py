@@ -1,1 +1,0 @@
-"""The mapping of studies: one study with its values, the tables it is read from, the advice."""
