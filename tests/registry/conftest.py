@@ -5,12 +5,16 @@ from types import MappingProxyType
 
 import pytest
 
+from api.service.measurements import Measurements as Measured
+from benchmark.plan.combinations import scorable_plan, study_plans
+from benchmark.plan.shown import data_sets
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.times import read_times
 from registry import studies
 from registry.fidelity.particulars import RunFact
 from registry.measured_pipelines import Measurements
+from registry.resolution import Resolution, resolve_all
 from registry.studies import AttributeValue, Facts, Study
 
 sys.path.append(str(Path(__file__).parent / "fakes"))
@@ -60,3 +64,10 @@ def published() -> Measurements:
     times = read_times(store.directory).latency_us
     rows = pipelines(store.rows(unit=None), times, standard_benches(store.pins()))
     return Measurements(rows)
+
+
+@pytest.fixture(scope="session")
+def everything() -> Mapping[str, Resolution]:
+    """Every study of the survey, resolved and graded by the published scores."""
+    plans = {"own": study_plans(), "data_sets": data_sets()}
+    return resolve_all(scorable_plan(), **plans, scores=Measured().own_errors)

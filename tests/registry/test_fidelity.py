@@ -23,8 +23,6 @@ from stand_ins import (
     study_of,
 )
 
-from api.service.measurements import Measurements
-from benchmark.plan.combinations import scorable_plan, study_plans
 from benchmark.plan.shown import data_sets
 from registry.fidelity.grading import Grade
 from registry.fidelity.particulars import (
@@ -34,7 +32,7 @@ from registry.fidelity.particulars import (
     RunFact,
 )
 from registry.fidelity.purposes import DataSet, DatasetCondition
-from registry.resolution import Resolution, resolve, resolve_all
+from registry.resolution import Resolution, resolve
 from registry.studies import AttributeValue, Default, Facts
 
 Build = Callable[[list[Mapping[str, list[str]]]], Facts]
@@ -190,13 +188,6 @@ def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts
     found = resolved(facts, aloft, on=on, models=[drift])
     assert parts(found) == ["sensor"]
     assert found.pipelines[0].settings == (DatasetCondition("PD-Lens", "nominal", ("flight",)),)
-
-
-@pytest.fixture(scope="module")
-def everything() -> dict[str, Resolution]:
-    scores = Measurements().own_errors
-    plans = {"own": study_plans(), "data_sets": data_sets()}
-    return resolve_all(scorable_plan(), **plans, scores=scores)
 
 
 def test_grades_of_the_survey_follow_from_their_departures(

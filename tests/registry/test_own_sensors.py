@@ -4,19 +4,10 @@ import re
 
 import pytest
 
-from api.service.measurements import Measurements
-from benchmark.plan.combinations import scorable_plan, study_plans
 from benchmark.plan.parts import study_parts
-from benchmark.plan.shown import data_sets
 from registry.fidelity.evidence import UNKNOWN_SHARE
 from registry.fidelity.particulars import DIMENSIONS
-from registry.resolution import Resolution, resolve_all
-
-
-@pytest.fixture(scope="module")
-def everything() -> dict[str, Resolution]:
-    plans = {"own": study_plans(), "data_sets": data_sets()}
-    return resolve_all(scorable_plan(), **plans, scores=Measurements().own_errors)
+from registry.resolution import Resolution
 
 
 def test_unknown_dimensions_stand_in_a_sentence_of_their_own(
