@@ -232,3 +232,28 @@ def test_a_column_called_as_ours_is_taken_though_some_cells_cannot_be_read(
     given["Mask"] = ["12", "14", "16"]  # something else altogether
     with pytest.raises(SurveyImportError, match="no column holds an attribute"):
         match_columns(tables, given)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [">0.1", "<0.1", "≥ 0.1 deg", "<= 0.1", "0.1 0.2", "１.０", "1_29", "0x10", "nan", "inf"],
+)
+@pytest.mark.parametrize("attribute", ["accuracy_deg", "accuracy"])
+def test_limits_and_what_is_no_plain_number_are_refused(
+    attribute: str, text: str, tables: survey_data.SurveyTables
+) -> None:
+    reader = ValueReader(tables)
+    if text == "nan":  # how tables say that nothing is stated
+        assert reader.read(attribute, text) == []
+        return
+    with pytest.raises(UnreadableValueError):
+        reader.read(attribute, text)
+
+
+def test_a_huge_cell_is_refused_and_a_long_one_split_in_one_pass(
+    tables: survey_data.SurveyTables,
+) -> None:
+    reader = ValueReader(tables)
+    with pytest.raises(UnreadableValueError, match="at most 5000 characters"):
+        reader.read("mask", "(" * 100_000)
+    assert reader.read("mask", "(," * 2000) == []

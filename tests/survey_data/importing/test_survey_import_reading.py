@@ -85,6 +85,7 @@ def test_rows_are_numbered_as_lines_of_the_file(tmp_path: Path) -> None:
         ("a.csv", b'Key,Mask\nA,B\nA,"B\n', (3, None), "broken CSV"),
         ("a.csv", b'Key,Mask\nA,"B"x\n', (2, None), "broken CSV"),
         ("a.csv", "Key,Mask\nA,B\nMüller,C\n".encode("latin-1"), (3, None), "UTF-8"),
+        ("a.csv", b"Key,Mask\nA,#N/A\n", (2, "Mask"), "an error of a spreadsheet"),
         ("a.csv", b"Key,Mask\nA,\x00\n", (2, None), "null character"),
         ("a.csv", b"PK\x03\x04rest", (None, None), "ends in .xlsx"),
         ("a.xlsx", b"Key,Mask\nA,B\n", (None, None), "not one"),
