@@ -1,8 +1,7 @@
-"""FastAPI's OpenAPI document with what FastAPI cannot know: answers to the examples, refusals."""
+"""FastAPI's OpenAPI document with what FastAPI cannot know: media types, examples, refusals."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,16 +9,12 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
-from api.http.asking import ask
 from api.schema.service import ProblemDocument
-from api.service.knowledge import Knowledge
-from api.service.problems import MEDIA_TYPE, Problem
+from api.service.problems import MEDIA_TYPE
 from api.service.refusals import asked_models, of_list, schemas
 from api.web.answers import Answer, AnswerRoute
-from api.web.negotiation import CITATIONS, CSL, CSV, JSON
+from api.web.negotiation import CSL, JSON
 
-LARGEST_EXAMPLE = 600  # bytes; a larger answer has no example of its JSON
-LONGEST_TEXT = 80  # characters of a text in an example
 REFUSALS = {
     400: "Unknown parameter, contradictory parameters, or malformed request.",
     404: "Not found; the nearest name is given.",
@@ -50,10 +45,7 @@ _NOT_MODIFIED = {"description": "Not modified: the ETag in If-None-Match is curr
 
 
 def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
-    """Return the OpenAPI document of `app`, which serves `routes`.
-
-    The examples are what is answered now.
-    """
+    """Return the OpenAPI document of `app`, which serves `routes`."""
     document = get_openapi(
         title=app.title,
         version=app.version,
@@ -79,12 +71,12 @@ def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
         if isinstance(route, AnswerRoute) and route.include_in_schema:
             for method in route.methods or ():
                 operation = document["paths"][route.path][method.lower()]
-                _complete(operation, route, app.state.knowledge)
+                _complete(operation, route)
     return document
 
 
-def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> None:
-    """Add the example, its answer, and the refusals to an operation."""
+def _complete(operation: dict[str, Any], route: APIRoute) -> None:
+    """Add the example of a question, the media types and the refusals to an operation."""
     declared = schemas(route.endpoint)
     example = _example(route)
     for parameter in operation.get("parameters", ()):
@@ -110,43 +102,9 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
         success["content"] = {**offered, **success["content"]}
         if CSL in offered:
             success["content"][CSL] = {"schema": {"type": "array", "items": {"type": "object"}}}
-        _give_examples(success["content"], route, known, example)
     same = {"304": _NOT_MODIFIED} if "body" not in declared else {}
     refused = {str(one): {"$ref": f"#/components/responses/{one}"} for one in sorted(statuses)}
     operation["responses"] = {"200": success, **same, **refused}
-
-
-def _give_examples(
-    content: dict[str, Any], route: APIRoute, known: Knowledge, example: dict[str, Any]
-) -> None:
-    """Add what is answered to the example: a short document whole, of a table the columns."""
-    try:
-        answer = ask(route.endpoint, known, **example)
-    except Problem:  # what it compares has not been measured
-        return
-    # Through bytes and back: the example is what travels, NaN as null included.
-    document = shorten(json.loads(bytes(answer.body)))
-    if len(json.dumps(document)) <= LARGEST_EXAMPLE:
-        content[JSON]["example"] = document
-    content[CSV]["example"] = ",".join(answer.columns) + "\n"
-    for kind in CITATIONS.values():
-        if kind in content:
-            text = bytes(answer.representation(kind).body).decode()
-            content[kind]["example"] = json.loads(text) if kind == CSL else text
-
-
-def shorten(value: Any) -> Any:
-    """Return a document that keeps its shape and loses its length.
-
-    Of a list the first item stays, of a text as much as a line holds.
-    """
-    if isinstance(value, dict):
-        return {name: shorten(member) for name, member in value.items()}
-    if isinstance(value, list):
-        return [shorten(member) for member in value[:1]]
-    if isinstance(value, str) and len(value) > LONGEST_TEXT:
-        return value[: LONGEST_TEXT - 1] + "…"
-    return value
 
 
 def _example(route: APIRoute) -> dict[str, Any]:

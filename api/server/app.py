@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import PackageNotFoundError, version
@@ -16,8 +14,8 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
+from api.http import about, calibrations, files, metadata, tables
 from api.http.openapi import describe
-from api.http.routers import ROUTERS as SERVICE
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
 from api.service.knowledge import Knowledge
@@ -32,7 +30,16 @@ DESCRIPTION = (
     "strong `ETag`. Errors are problem documents (RFC 9457) with the nearest valid value. In CSV "
     "an empty cell is an unknown value, and `none stated` is the survey's value `None`."
 )
-ROUTERS = (*SERVICE, *PAGES)
+ROUTERS = (
+    metadata.router,  # before what takes its words for names of data sets
+    metadata.root,
+    tables.router,
+    files.router,
+    calibrations.router,
+    about.router,
+    files.static,
+    *PAGES,
+)
 ROUTES = [route for router in ROUTERS for route in router.routes if isinstance(route, APIRoute)]
 
 
@@ -67,13 +74,10 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     )
     app.add_middleware(EveryResponse)
 
-    describing = threading.Lock()  # FastAPI's part of it is not for two threads at once
-
     def openapi() -> dict[str, Any]:
-        with describing:
-            if app.openapi_schema is None:
-                app.openapi_schema = describe(app, ROUTES)
-            return app.openapi_schema
+        if app.openapi_schema is None:
+            app.openapi_schema = describe(app, ROUTES)
+        return app.openapi_schema
 
     app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way to extend it
     return app
@@ -82,9 +86,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.knowledge.load_all()
-    # Now, as it holds up every answer meanwhile; in a thread, as path functions are asked in loops
-    # of their own.
-    await asyncio.to_thread(app.openapi)
+    app.openapi()  # now, as it holds up every answer meanwhile
     yield
 
 

@@ -11,14 +11,20 @@ from api.service.protocol import protocol as statements
 
 
 def advice(known: Knowledge, query: AdviceQuery) -> Document:
-    """List the sensors and calibrations that the survey's text recommends, and for which tasks."""
+    """List the sensors and calibrations that the survey's text recommends, and for which tasks.
+
+    Rows of errors name errors that occur, which is no recommendation.
+    """
     found = narrow(known.advice, query, ("requirement", "detector", "mask"))
     shown = page(order(found, query.sort), "/v1/advice", query)
     return list_document(shown, shown.items, columns_of(Advice), fields=query.fields)
 
 
 def protocol() -> Document:
-    """Describe how the survey selected studies, and the rules of the scores."""
+    """Describe how the survey selected studies, and the rules of the scores.
+
+    CSV: a row per sentence.
+    """
     document = statements()
     return Document(
         document, columns_of(Statement), lambda: [*document["survey"], *document["scores"]]

@@ -12,7 +12,11 @@ from api.service.knowledge import Knowledge
 
 
 def assessment(known: Knowledge, query: AssessmentQuery) -> Document:
-    """Return the survey's score, the measured one and their agreement by method and property."""
+    """Scores 2 (yes), 1 (partly), 0 (no) of 19 methods and 21 properties.
+
+    Each has the score of the survey, the measured score and their agreement. CSV: a row per method
+    and property.
+    """
     whole = known.measurements.assessment
     methods = [m for m in whole["methods"] if not query.method or m["method"] in query.method]
     rows: list[Mapping[str, Any]] = [

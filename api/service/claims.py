@@ -15,7 +15,10 @@ from benchmark.claims.ledger import Entry, tally
 
 
 def claims(known: Knowledge, query: ClaimsQuery) -> Document:
-    """List the claims of the survey about algorithms with their verdicts."""
+    """List claims of the survey with their verdicts.
+
+    CSV: a row per claim.
+    """
     found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
     items = order([entry.to_dict() for entry in found], query.sort)
     shown = page(items, "/v1/claims", query)
@@ -26,7 +29,10 @@ def claims(known: Knowledge, query: ClaimsQuery) -> Document:
 
 
 def claim(known: Knowledge, id: ClaimId) -> Document:  # noqa: A002 - the parameter's name
-    """Return a claim with its criteria, the results of all trials and its plot."""
+    """Return a claim with its criteria, the results of all trials and its plot.
+
+    CSV: the criteria.
+    """
     document = detail(known.measurements.claims[id])
     second = {rule["rule"]: rule["result"] for rule in document["second"]}
     rows = [{**rule, "second_result": second.get(rule["rule"])} for rule in document["rules"]]

@@ -48,10 +48,8 @@ _RING = ("inner_deg", "outer_deg", "rms_deg")
 def compare(known: Knowledge, query: CompareQuery) -> Document:
     """Compare two to four pipelines of a data set, or two to four architectures.
 
-    Raises
-    ------
-    Problem
-        400 for what cannot be compared.
+    Error, bound, availability, time, calibration poses, errors by condition and off-axis angle, and
+    studies. CSV: a row each, without errors by condition and angle.
     """
     try:
         document = _compare(known.of(query.edition), query)

@@ -22,12 +22,16 @@ class Document:
     columns : of the table, as `api.schema.table.columns_of` names them
     rows : gives the rows of the table
     links : values of the Link header
+    cited : studies that can be had as references; None where there are none, or columns were chosen
+    saved_as : name of a file of references, without suffix
     """
 
     document: Mapping[str, Any]
     columns: Sequence[str] = ()
     rows: Callable[[], Sequence[Row]] = list
     links: Sequence[str] = ()
+    cited: Sequence[Row] | None = None
+    saved_as: str = "studies"
 
     def table(self) -> str:
         """Return the CSV."""

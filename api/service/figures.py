@@ -12,7 +12,7 @@ from api.service.knowledge import Knowledge
 
 
 def figures(known: Knowledge) -> Document:
-    """List the figures and the attributes they show."""
+    """List the figures and the attributes they show. The evidence map is `matrix`."""
     items = [
         {"figure": name, "title": title, "caption": caption, "levels": list(LEVELS[name])}
         for name, (title, caption) in TITLES.items()
@@ -22,14 +22,22 @@ def figures(known: Knowledge) -> Document:
 
 
 def matrix(known: Knowledge, query: MatrixQuery) -> Document:
-    """Return the evidence map: one row per pair of values."""
+    """Return the evidence map: one row per pair of values.
+
+    `state` is `measured` (scored here, with the best own error), `studied`, `impossible` (with the
+    `reason`), `unknown` (a study has one value, the other is unknown) or `unstudied`. `command` and
+    `leads_to` show how to measure the pair.
+    """
     studies = known.of(query.edition).facts
     asked = (query.by_attribute(), query.rows, query.columns)
     return document_of(evidence_map(studies, *asked, evidence=known.evidence))
 
 
 def figure(known: Knowledge, figure: FigureName, query: FigureQuery) -> Document:
-    """Return a figure as sentences and as a table, with the studies of every mark."""
+    """Return a figure as sentences and as a table, with the studies of every mark.
+
+    CSV: a row per mark.
+    """
     return document_of(drawn(figure, known.of(query.edition).facts, query.by_attribute()))
 
 

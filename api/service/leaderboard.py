@@ -23,7 +23,12 @@ if TYPE_CHECKING:
 
 
 def leaderboard(known: Knowledge, query: WholeLeaderboardQuery) -> Document:
-    """Return the leaderboards of all data sets and conditions."""
+    """Return the leaderboards of all data sets and conditions.
+
+    Pipelines are ranked by error, the best of each extractor first. Pipelines below 95 %
+    availability rank last. Ranks are shared if a paired test over sensor units cannot separate
+    them. `whole` returns all rows at once.
+    """
     board = {k: v for k, v in known.measurements.leaderboard.items() if k != "sweeps"}
     rows = known.measurements.board_rows()
     shown = Page(rows, len(rows), None, None)
@@ -47,14 +52,21 @@ def _with_rows(
 
 
 def architectures(known: Knowledge, query: ArchitecturesQuery) -> Document:
-    """Return the best pipeline of each architecture, with its bound and its uncertainty."""
+    """Return the best pipeline of each architecture, with its bound and its uncertainty.
+
+    Uncertainty: standard error of the ratio to the bound, errors on other sensor units, and ties
+    with the runner-up.
+    """
     rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
     shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
     return list_document(shown, shown.items, columns_of(BestOfArchitecture), fields=query.fields)
 
 
 def overview(known: Knowledge, query: OverviewQuery) -> Document:
-    """Return how often each extractor, compensation and model is near the bound, over data sets."""
+    """Return how often each extractor, compensation and model is near the bound, over data sets.
+
+    `says` describes the aggregation. CSV: a row per part.
+    """
     board = known.measurements.leaderboard
     boards = narrow(board["datasets"], query, ("detector", "mask"))
     document = overview_of({"datasets": boards})
@@ -65,7 +77,11 @@ def overview(known: Knowledge, query: OverviewQuery) -> Document:
 def leaderboard_of_dataset(
     known: Knowledge, dataset: DatasetName, query: LeaderboardQuery
 ) -> Document:
-    """Return the leaderboard of a data set."""
+    """Return the leaderboard of a data set.
+
+    `field_deg` ranks by the error over part of the field, `max_error_deg` by the field of view for
+    a maximum error.
+    """
     ranked = known.measurements.board_rows(dataset)
     if query.field_deg is not None:
         ranked = at_field(ranked, int(query.field_deg))

@@ -27,7 +27,7 @@ from api.schema.recommendations import (
     Reported,
     TaskMeasure,
 )
-from api.schema.requirements import Requirements
+from api.schema.requirements import Requirements, RequirementsBody, RequirementsQuery
 from api.schema.table import columns_of
 from api.service.documents import Document, list_document
 from api.service.knowledge import Knowledge
@@ -35,11 +35,11 @@ from api.service.pagination import Page, page
 from api.service.problems import Problem, Violation
 from api.service.reasons import notes, reason
 from registry import calibration as found_by
+from registry import recommendation
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import calibration_name, contradictions
 from registry.measured_pipelines import Measurements
 from registry.paths import PATH_LEVELS, answer_flow
-from registry.recommendation import recommend
 from registry.relaxation import Explanation
 from registry.reports import Report
 from registry.requirements import PARAMETERS, SETTINGS
@@ -64,31 +64,45 @@ def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
     names = [n for n in (*PARAMETERS, *SETTINGS, "mission") if n in asked.model_fields_set]
     given = {name: getattr(asked, name) for name in names}
     try:
-        return recommend(given, measured, sort=asked.sort, facts=facts)
+        return recommendation.recommend(given, measured, sort=asked.sort, facts=facts)
     except InvalidValueError as error:
         wrong = Violation(error.parameter, str(error.value), error.expected, error.nearest)
         raise Problem(422, "invalid-value", errors=[wrong]) from error
 
 
-def recommendations(known: Knowledge, query: Requirements) -> Document:
-    """Return a page of the answer to requirements; its table has every calibration."""
-    answer = _ask(known, query)
-    shown = page(answer.architectures, PATH, query)
+def recommendations(known: Knowledge, query: RequirementsQuery) -> Document:
+    """Rank architectures (detector + mask) whose reported or measured evidence meets requirements.
+
+    Each with its best calibration (extractor + compensations + model). Values of one attribute are
+    alternatives; all other requirements must hold. An empty answer names the requirement that
+    excludes all, and changes that would help. CSV: a row per calibration, all of them.
+    """
+    return _answered(known, query)
+
+
+def recommend(known: Knowledge, body: RequirementsBody) -> Document:
+    """As GET, with the requirements as JSON. A list of one value may be given as that value."""
+    return _answered(known, body)
+
+
+def _answered(known: Knowledge, asked: Requirements) -> Document:
+    answer = _ask(known, asked)
+    shown = page(answer.architectures, PATH, asked)
     return Document(
-        document(answer, query, shown.items, shown.next).model_dump(),
+        document(answer, asked, shown.items, shown.next).model_dump(),
         columns_of(RecommendationRow),
         lambda: [row.model_dump() for row in rows(answer)],
     )
 
 
-def flow_of_answer(known: Knowledge, query: Requirements) -> Document:
-    """Return the decision flow behind the answer to requirements; its table has the paths."""
+def recommendations_flow(known: Knowledge, query: RequirementsQuery) -> Document:
+    """Studies behind an answer, as paths, nodes and links from task to extractor."""
     found = flow(_ask(known, query)).model_dump()
     return Document(found, columns_of(Path), lambda: found["paths"])
 
 
-def designs(known: Knowledge, query: Requirements) -> Document:
-    """Return a page of all calibrations of the answer to requirements."""
+def recommended_designs(known: Knowledge, query: RequirementsQuery) -> Document:
+    """Every calibration that meets the requirements, as flat rows, paged."""
     shown = _design_page(_ask(known, query), query)
     items = [row.model_dump() for row in shown.items]
     return list_document(shown, items, columns_of(RecommendationRow))

@@ -20,14 +20,22 @@ def results(known: Knowledge, query: ScoresQuery) -> Document:
 
 
 def sweeps(known: Knowledge, query: SweepsQuery) -> Document:
-    """Return the error of every extractor against noise, feature size, sub-pixel phase and more."""
+    """Return the error of every extractor against noise, feature size, sub-pixel phase and more.
+
+    The features are known in closed form; each point has its Cramer-Rao bound. A row without a
+    sweep gives the reason why an extractor is not measured.
+    """
     rows = narrow(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
     shown = page(order(rows, query.sort), "/v1/sweeps", query)
     return list_document(shown, shown.items, columns_of(Sweep), fields=query.fields)
 
 
 def curves(known: Knowledge, query: CurvesQuery) -> Document:
-    """Return the error of leading pipelines against the number of calibration poses."""
+    """Error against number of calibration poses, three leading pipelines of each data set.
+
+    Each is calibrated on random subsets of the poses, on two sensor units, and scored on the whole
+    test split. CSV: a row per pipeline, without the points.
+    """
     rows = narrow(known.measurements.curves, query, ("dataset", "extractor", "model"))
     shown = page(order(rows, query.sort), "/v1/curves", query)
     return list_document(shown, shown.items, columns_of(CurveRow), fields=query.fields)

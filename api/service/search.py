@@ -13,7 +13,10 @@ from api.service.pagination import page
 
 
 def search(known: Knowledge, query: SearchQuery) -> Document:
-    """Search studies, algorithms, data sets, claims, attributes and terms."""
+    """Search studies, algorithms, data sets, claims, attributes and terms.
+
+    Exact names rank first, then results with all words.
+    """
     hits = known.index.find(query.q, query.kind)
     ranked: list[dict[str, Any]] = []
     for rank, hit in enumerate(hits, start=1):

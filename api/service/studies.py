@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from api.schema.studies import AttributeValue, Edition, StudiesQuery, StudyRow
@@ -22,28 +23,41 @@ from survey_data.reported import Quantity
 
 
 def studies(known: Knowledge, query: StudiesQuery) -> Document:
-    """List the studies of the survey: 129 keys in its tables, 128 in its text."""
+    """List the studies of the survey: 129 keys in its tables, 128 in its text.
+
+    `edition=all` includes added studies. BibTeX, RIS and CSL JSON: references to studies with a
+    known title.
+    """
     known = known.of(query.edition)
-    found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
-    rows = order([_row(study, known) for study in found], query.sort)
+    chosen = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
+    rows = order([_row(study, known) for study in chosen], query.sort)
     shown = page(rows, "/v1/studies", query)
-    return list_document(
+    found = list_document(
         shown,
         shown.items,
         columns_of(StudyRow),
         lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
         fields=query.fields,
     )
+    return found if query.fields else replace(found, cited=shown.items)
 
 
 def editions(known: Knowledge) -> Document:
-    """List the editions of the studies, for citation."""
+    """List the editions of the studies, for citation.
+
+    A version consists of the data package's version, the number of studies and a digest of their
+    tables.
+    """
     items = [one.to_dict() for one in known.editions]
     return Document({"items": items}, columns_of(Edition), lambda: items)
 
 
 def study(known: Knowledge, key: StudyKey) -> Document:
-    """Return a study: values with basis, implementation and scores."""
+    """Return a study: values with basis, implementation and scores.
+
+    Pipelines implement the study's method or the nearest one; values that are not implemented are
+    listed as gaps. CSV: the values. BibTeX, RIS, CSL JSON: the reference.
+    """
     known = known.of("all")
     found = known.facts.study(key)
     resolution = known.resolutions[key]
@@ -64,7 +78,13 @@ def study(known: Knowledge, key: StudyKey) -> Document:
         ],
         "gaps": [gap.to_dict() for gap in resolution.gaps],
     }
-    return Document(document, columns_of(AttributeValue), lambda: document["attributes"])
+    return Document(
+        document,
+        columns_of(AttributeValue),
+        lambda: document["attributes"],
+        cited=[document],
+        saved_as=key,
+    )
 
 
 def _report(study: Study, quantity: Quantity) -> dict[str, Any] | None:

@@ -12,7 +12,10 @@ from registry.flows import chart as flows_of
 
 
 def taxonomy(known: Knowledge) -> Document:
-    """Return all values of all attributes of studies."""
+    """List all values of all attributes of studies.
+
+    Each has name, category and section of the survey. Other endpoints take them as filters.
+    """
     attributes = known.taxonomy.to_dict()
     return Document(
         {"attributes": attributes},
@@ -26,7 +29,10 @@ def taxonomy(known: Knowledge) -> Document:
 
 
 def flows(known: Knowledge, chart: Chart, query: FlowsQuery) -> Document:
-    """Return nodes and links of a diagram of the survey, with their studies."""
+    """Return nodes and links of a diagram of the survey, with their studies.
+
+    Filters keep the studies with one of the values. CSV: the links.
+    """
     studies = known.of(query.edition).facts
     found = flows_of(
         chart, query.by_attribute(), query.counting, grouped=query.grouped, facts=studies

@@ -80,43 +80,29 @@ class Answer(JSONResponse):
 
 
 class CitedAnswer(Answer):
-    """An answer whose studies can be had as references, too.
-
-    Parameters
-    ----------
-    found : the document and the table
-    studies : that are cited
-    name : file name without suffix that a client saves references under
-    status_code : which FastAPI documents by its default
-    narrowed : whether the answer was narrowed to columns, which references cannot be
-    """
+    """An answer whose studies can be had as references, too."""
 
     media_types: ClassVar[tuple[str, ...]] = (JSON, CSV, *CITATIONS.values())
+    cited: Sequence[Row] | None
+    saved_as: str
 
-    def __init__(
-        self,
-        found: Document,
-        studies: Sequence[Row],
-        name: str = "studies",
-        status_code: int = 200,
-        *,
-        narrowed: bool = False,
-    ) -> None:
-        super().__init__(found.document, found.columns, found.rows, found.links, status_code)
-        self.studies = studies
-        self.name = name
-        self.narrowed = narrowed
+    @classmethod
+    def of(cls, found: Document) -> Self:
+        """Return a document of the service as an answer."""
+        made = super().of(found)
+        made.cited, made.saved_as = found.cited, found.saved_as
+        return made
 
     def representation(self, wanted: str) -> Response:
         """Return the answer in a media type."""
         form = next((name for name, kind in CITATIONS.items() if kind == wanted), None)
         if form is None:
             return super().representation(wanted)
-        if self.narrowed:
+        if self.cited is None:
             error = Violation("fields", form, "no columns beside references; leave out fields")
             raise Problem(400, "not-combinable", errors=[error])
-        saved = f'attachment; filename="{self.name}.{citations.SUFFIXES[form]}"'
-        text = citations.FORMS[form](self.studies)
+        saved = f'attachment; filename="{self.saved_as}.{citations.SUFFIXES[form]}"'
+        text = citations.FORMS[form](self.cited)
         return self.written(text, wanted, **{"Content-Disposition": saved})
 
 

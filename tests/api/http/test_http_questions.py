@@ -12,7 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import Field
 
-from api.http.asking import ask
 from api.schema.base import Question
 from api.schema.parameters import (
     DEFAULT_PAGE,
@@ -25,6 +24,8 @@ from api.schema.parameters import (
     Several,
 )
 from api.server import handlers
+from api.service.asking import ask
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.pagination import page
 from api.service.problems import Problem
@@ -49,6 +50,10 @@ class Asked(Question):
 
 class AskedInBody(Asked, strict=True):
     """The same in a body."""
+
+
+def understood(known: Knowledge, query: Asked) -> Document:
+    return Document(query.model_dump())
 
 
 async def by_query(known: Known, query: Annotated[Asked, Query()]) -> Answer:
@@ -171,11 +176,11 @@ def test_a_body_is_taken_to_the_letter(body, expected):
 
 def test_what_is_asked_in_this_process_is_refused_as_over_http():
     with pytest.raises(Problem) as refused:
-        ask(by_query, KNOWLEDGE, query={"task": ["fov"], "limit": 0})
+        ask(understood, KNOWLEDGE, query={"task": ["fov"], "limit": 0})
     over_http = refusal("task=fov&limit=0")
     assert refused.value.document("/") == over_http
     with pytest.raises(Problem) as refused:
-        ask(by_query, KNOWLEDGE, query={"taks": ["FOV"]})
+        ask(understood, KNOWLEDGE, query={"taks": ["FOV"]})
     assert refused.value.document("/") == refusal("taks=FOV")
 
 

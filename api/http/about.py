@@ -32,7 +32,7 @@ async def health(request: Request, response: Response, known: Known) -> dict[str
 
 
 @router.get("/openapi.json", include_in_schema=False)
-def openapi(request: Request) -> Response:
+async def openapi(request: Request) -> Response:
     """Give the description of the service."""
     return JSONResponse(request.app.openapi())
 
