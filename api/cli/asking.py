@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError, unfit
 from api.service import asking
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem, Violation
+from api.user_cache import user_cache
 
 
 def ask(
@@ -41,7 +41,7 @@ def ask(
 @cache
 def knowledge() -> Knowledge:
     """Return what is known, loaded on first use."""
-    return Knowledge(working=working_directory())
+    return Knowledge(working=user_cache())
 
 
 #: What a person calls a part of a path, and the command that lists what it can be.

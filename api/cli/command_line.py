@@ -23,7 +23,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from api.cli.completion import VARIABLE
 from api.cli.spreadsheets import offer
 from benchmark.processes import (
     INTERRUPTED,
@@ -103,7 +102,7 @@ class LazyCommands(TyperGroup):
         """Run, and turn what goes wrong into an exit code and one line on stderr."""
         extra["standalone_mode"] = False
         _open_streams()
-        if os.environ.get(VARIABLE):
+        if os.environ.get("_SUNATLAS_COMPLETE"):
             from typer._completion_classes import completion_init  # noqa: PLC0415 - as Typer does
 
             completion_init()

@@ -1,7 +1,7 @@
 """Measuring cells for a command: where results are looked up, where new ones go.
 
 A cell that the published results hold for the code and data as they are is read there. Any other
-is measured once into the working store (`api.cli.working`), a directory of the same files,
+is measured once into the working store (`api.user_cache`), a directory of the same files,
 and read from it the next time.
 """
 
@@ -15,8 +15,9 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli import completion
-from api.cli.working import working_directory
+from api.cli.completion import complete
+from api.schema.parameters import OneOf
+from api.user_cache import user_cache
 from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
 from benchmark.results.times import read_times
@@ -66,7 +67,7 @@ SchedulerOption = Annotated[
 SuiteOption = Annotated[
     str | None,
     typer.Option(
-        autocompletion=completion.one_of(*SUITES),
+        autocompletion=complete(OneOf(lambda: tuple(SUITES))),
         help=f"A suite: {'; '.join(f'{suite.name} ({suite.what})' for suite in SUITES.values())}.",
         show_default=False,
     ),
@@ -75,7 +76,7 @@ SuiteOption = Annotated[
 
 def stores_of(directory: Path | None) -> tuple[Store, Store]:
     """Return the published results and the working store: where cells are looked up, in order."""
-    return Store(PUBLISHED), Store(working_directory(directory))
+    return Store(PUBLISHED), Store(directory or user_cache())
 
 
 def every_store(directory: Path | None) -> tuple[Store, Store, Store]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, TypeAlias, Union, get_args, get_origin
@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from api.cli import completion
+from api.cli.completion import complete
 from api.schema import words
 from api.schema.former_names import PARAMETERS
 from api.schema.parameters import OneOf
@@ -22,19 +22,15 @@ from registry.taxonomy import ATTRIBUTES, NO_IMPLEMENTATION_STATED, NONE_STATED
 Asked: TypeAlias = dict[str, Any]
 """What is asked, by parameter of the HTTP API; without what no option asks for."""
 
-_WORDS: Mapping[OneOf, completion.Complete] = {
-    get_args(kind)[1]: complete
-    for kind, complete in (
-        (words.DatasetName, completion.datasets),
-        (words.Condition, completion.conditions),
-        (words.ExtractorName, completion.extractors),
-        (words.ModelName, completion.models),
-        (words.MethodName, completion.methods),
-        (words.Property, completion.properties),
-        *((getattr(words, name.title()), completion.values(name)) for name in ATTRIBUTES),
+_MANY = frozenset(
+    get_args(kind)[1]
+    for kind in (
+        *(words.DatasetName, words.Condition, words.ExtractorName, words.ModelName),
+        *(words.MethodName, words.Property),
+        *(getattr(words, name.title()) for name in ATTRIBUTES),
     )
-}
-"""Names that are completed without loading what has them; few others, which the help lists."""
+)
+"""Lists that the help does not print."""
 
 _PLAIN = (str, int, float, bool)
 
@@ -101,14 +97,14 @@ def option_of(model: type[BaseModel], name: str, option: str | None = None) -> A
     several = any(get_origin(one) is list for one in kinds)
     kind: Any = next(one for one in kinds if one in _PLAIN or get_origin(one) is Literal)
     said = (field.description or "").removesuffix(".")
-    if word and word not in _WORDS:
+    if word and word not in _MANY:
         said += f": {', '.join(word.words())}"
     settings: dict[str, Any] = {
         "help": f"{said}; may be repeated." if several else f"{said}.",
         "show_default": default is not None,
     }
     if word:
-        settings["autocompletion"] = _WORDS.get(word) or completion.one_of(*word.words())
+        settings["autocompletion"] = complete(word)
     if isinstance(default, int):  # of what has no default the answer says what it can be
         for one in field.metadata:
             settings |= {

@@ -6,11 +6,12 @@ from typing import Annotated
 
 import typer
 
-from api.cli import completion
 from api.cli.asking import ask
+from api.cli.completion import complete
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
+from api.schema import words
 from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
 from api.schema.table import columns_of
 from api.service import claims as service
@@ -28,7 +29,7 @@ def claims(
     claim: Annotated[
         str | None,
         typer.Argument(
-            autocompletion=completion.claims,
+            autocompletion=complete(words.ClaimId),
             metavar="[ID]",
             help="Claim to show in detail, such as C29.",
             show_default=False,

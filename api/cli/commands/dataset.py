@@ -7,13 +7,15 @@ from typing import Annotated
 
 import typer
 
-from api.cli import completion, spreadsheets
+from api.cli import spreadsheets
 from api.cli.asking import ask, knowledge
 from api.cli.commands import dataset_fetch
+from api.cli.completion import complete
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError, given
+from api.schema import words
 from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.scores import ScoresQuery
@@ -50,7 +52,7 @@ BUILT = ("dataset", "rms_deg", "id", "name", "accuracy_rms_deg", "accuracy_ratio
 NameArgument = Annotated[
     str,
     typer.Argument(
-        autocompletion=completion.datasets, help="Name of the data set.", show_default=False
+        autocompletion=complete(words.DatasetName), help="Name of the data set.", show_default=False
     ),
 ]
 
@@ -254,7 +256,7 @@ def preview(
     condition: Annotated[
         str | None,
         typer.Option(
-            autocompletion=completion.conditions,
+            autocompletion=complete(words.Condition),
             help="Condition; by default the first.",
         ),
     ] = None,
@@ -262,7 +264,7 @@ def preview(
         str | None,
         typer.Option(
             metavar="EXTRACTOR",
-            autocompletion=completion.extractors,
+            autocompletion=complete(words.ExtractorName),
             help="Draw the positions found by this extractor.",
         ),
     ] = None,
@@ -323,7 +325,7 @@ def pin(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            autocompletion=completion.datasets,
+            autocompletion=complete(words.DatasetName),
             metavar="[NAME]...",
             help="Data sets; by default all.",
             show_default=False,

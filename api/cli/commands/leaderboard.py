@@ -9,8 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli import completion, findings
+from api.cli import findings
 from api.cli.boards import architectures_text, overview_text
+from api.cli.completion import complete
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
@@ -18,6 +19,7 @@ from api.cli.measuring import (
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, line_width
 from api.cli.wrong_call import WrongCallError, given
+from api.schema import words
 from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
@@ -85,7 +87,7 @@ def leaderboard(
     dataset: Annotated[
         list[str] | None,
         typer.Option(
-            autocompletion=completion.datasets,
+            autocompletion=complete(words.DatasetName),
             help="Show all pipelines of this data set; may be repeated.",
             show_default=False,
         ),
@@ -93,7 +95,7 @@ def leaderboard(
     condition: Annotated[
         list[str] | None,
         typer.Option(
-            autocompletion=completion.conditions,
+            autocompletion=complete(words.Condition),
             help="Only this condition; may be repeated.",
             show_default=False,
         ),
@@ -332,7 +334,6 @@ def _show(
     form: Format,
 ) -> None:
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from api.schema import words  # noqa: PLC0415
 
     measurements = knowledge().measurements
     _require("dataset", datasets, words.datasets())

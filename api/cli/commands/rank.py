@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from api.cli import completion
+from api.cli.completion import complete
 from api.cli.contract import GUIDE, check_contract, name_of
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
@@ -16,6 +16,7 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit, say
+from api.schema import words
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
 from benchmark.leaderboard import candidate
@@ -37,7 +38,7 @@ def rank(
     algorithm: Annotated[
         str,
         typer.Argument(
-            autocompletion=completion.extractors,
+            autocompletion=complete(words.ExtractorName),
             help="Name, such as tm, or file of the algorithm.",
             show_default=False,
         ),
@@ -45,7 +46,9 @@ def rank(
     *,
     dataset: Annotated[
         str,
-        typer.Option(autocompletion=completion.datasets, help="Data set.", show_default=False),
+        typer.Option(
+            autocompletion=complete(words.DatasetName), help="Data set.", show_default=False
+        ),
     ],
     out: Annotated[
         Path | None,

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli import completion
 from api.cli.asking import ask, knowledge
 from api.cli.commands import benchmark
+from api.cli.completion import complete
 from api.cli.measuring import (
     SchedulerOption,
     ScoredCells,
@@ -24,6 +24,7 @@ from api.cli.measuring import (
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
+from api.schema import words
 from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
 from api.service import studies
@@ -49,7 +50,7 @@ def run(
     study: Annotated[
         str | None,
         typer.Argument(
-            autocompletion=completion.studies,
+            autocompletion=complete(words.StudyKey),
             help="Key of the study, such as Chang2008.",
             show_default=False,
         ),

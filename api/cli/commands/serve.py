@@ -16,8 +16,8 @@ import uvicorn
 from uvicorn.config import LOGGING_CONFIG
 from uvicorn.supervisors import Multiprocess
 
-from api.cli.working import working_directory
 from api.server import serving
+from api.user_cache import user_cache
 from benchmark.processes import take_time_to_end
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -55,7 +55,7 @@ def serve(
     description at /openapi.json, Prometheus metrics at /metrics. The guide must be built first
     (`sunatlas guide build`). Stop with Ctrl-C.
     """
-    os.environ[serving.WORKING] = str(working_directory())
+    os.environ[serving.WORKING] = str(user_cache())
     listener = listen(host, port)
     with listener, contextlib.ExitStack() as stack:
         # Loaded before anything is served: damaged facts are refused in one sentence.

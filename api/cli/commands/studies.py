@@ -9,11 +9,12 @@ from typing import Annotated, Any
 import typer
 
 from api.citations import FORMS
-from api.cli import completion
 from api.cli.asking import ask, knowledge
+from api.cli.completion import complete
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError, only_beside
+from api.schema import words
 from api.schema.parameters import LARGEST_PAGE
 from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
 from api.schema.table import columns_of
@@ -51,7 +52,7 @@ def studies(
     key: Annotated[
         str | None,
         typer.Argument(
-            autocompletion=completion.studies,
+            autocompletion=complete(words.StudyKey),
             help="Study to show in detail, such as Chang2008.",
         ),
     ] = None,
