@@ -39,7 +39,7 @@ class Found(Shape):
     id: str = Field(description="Name or key.")
     title: str
     excerpt: str = Field(description="Excerpt with a search word.")
-    score: float = Field(description="BM25F score; exact names rank first.")
+    score: float = Field(description="BM25 score; exact names rank first.")
     address: str | None = Field(description="Address in the API.")
 
 

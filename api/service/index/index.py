@@ -1,29 +1,31 @@
-"""Ranked search in a few hundred short texts: forgiving of endings and slips of the keyboard.
+"""Ranked search in a few hundred short texts, by SQLite's full-text search (FTS5, BM25).
 
-Ranking is BM25F (Robertson & Zaragoza 2009, "The Probabilistic Relevance Framework"): a word counts
-more the rarer it is, and in a name or title more than in a text. A word asked for also finds words
-that begin with it, and words a slip or two away, at a discount. Same index and question, same
-answer: ties are broken by kind and name.
+A word counts more the rarer it is, and in a name or title more than in a text. A word asked for
+also finds words that begin with it; where there is none, words most like it. Same index and
+question, same answer: ties are broken by kind and name.
 """
 
 from __future__ import annotations
 
-import math
 import re
+import sqlite3
 import unicodedata
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cached_property
 
-_K1 = 1.2  # how fast repetition stops counting
-_B = 0.6  # how much a long text is held against its words
-_WEIGHTS = {"name": 8.0, "title": 4.0, "words": 2.0, "text": 1.0}
-_BEGINS = 0.6  # what a word counts that only begins with the one asked for
-_SLIPPED = {1: 0.4, 2: 0.2}  # what a word counts that is one or two slips away
-_SHORTEST_BEGINNING = 3
-EXCERPT = 160  # characters, about
-
-_RUN = re.compile(r"[^\W_]+")
+_WEIGHTS = "8.0, 4.0, 2.0, 1.0, 4.0"  # of the columns
+_LIKE = 0.75  # similarity of a word that was probably meant (`difflib`)
+_SHORTEST_BEGINNING, _SHORTEST_SLIP = 3, 4  # letters
+_TABLE = (
+    "CREATE VIRTUAL TABLE entry USING "
+    "fts5(name, title, words, text, parts, tokenize='unicode61 remove_diacritics 2')"
+)
+_FIND = (
+    f"SELECT rowid, -bm25(entry, {_WEIGHTS}), snippet(entry, 3, '', '', '…', 24) "  # noqa: S608 - ours
+    "FROM entry WHERE entry MATCH ?"
+)
 _PARTS = re.compile(r"\d+|[^\W\d_]+")
 
 
@@ -48,11 +50,6 @@ class Entry:
     text: str = ""
     address: str | None = None
 
-    @property
-    def fields(self) -> Mapping[str, str]:
-        """The searched texts by the weight they have."""
-        return {"name": self.id, "title": self.title, "words": self.words, "text": self.text}
-
 
 @dataclass(frozen=True)
 class Hit:
@@ -73,7 +70,6 @@ class Index:
     """
 
     entries: Sequence[Entry]
-    _found: dict[str, Mapping[int, float]] = field(default_factory=dict, init=False, repr=False)
 
     def find(self, question: str, kinds: Collection[str] = ()) -> list[Hit]:
         """Return what answers a question, the best first.
@@ -86,158 +82,59 @@ class Index:
         question : words; punctuation, case and accents do not matter
         kinds : only these; all where empty
         """
-        words = list(dict.fromkeys(tokens(question)))
-        expanded = [self._meant(word) for word in words]
+        words = tokens(question)
         found: dict[int, list[float]] = {}
-        for meant in expanded:
-            best: dict[int, float] = {}
-            for word, discount in meant.items():
-                for number, score in self._scores(word).items():
-                    best[number] = max(best.get(number, 0.0), discount * score)
-            for number, score in best.items():
+        excerpts: dict[int, str] = {}
+        for word in words:
+            for number, score, excerpt in self._table.execute(_FIND, (self._meant(word),)):
                 found.setdefault(number, []).append(score)
-        called = self._called.get(tuple(words), set())
+                excerpts.setdefault(number, excerpt)
+        called = {
+            number
+            for number in found
+            for name in (self.entries[number].id, self.entries[number].title)
+            if tokens(name) == words
+        }
         ranked = sorted(
             found.items(),
             key=lambda item: (item[0] not in called, -len(item[1]), -sum(item[1]), item[0]),
         )
-        every = {word for meant in expanded for word in meant}
         return [
-            Hit(self.entries[number], round(sum(scores), 4), excerpt(self.entries[number], every))
+            Hit(entry, round(sum(scores), 4), excerpts[number] or entry.words)
             for number, scores in ranked
-            if not kinds or self.entries[number].kind in kinds
+            if (entry := self.entries[number]).kind in kinds or not kinds
         ]
 
     @cached_property
-    def _called(self) -> Mapping[tuple[str, ...], set[int]]:
-        """Entries by the words of their name, and of their title."""
-        found: dict[tuple[str, ...], set[int]] = {}
-        for number, entry in enumerate(self.entries):
-            for name in (entry.id, entry.title):
-                found.setdefault(tuple(dict.fromkeys(tokens(name))), set()).add(number)
-        return found
+    def _table(self) -> sqlite3.Connection:
+        table = sqlite3.connect(":memory:", check_same_thread=False)
+        table.execute(_TABLE)
+        table.executemany(
+            "INSERT INTO entry (rowid, name, title, words, text, parts) VALUES (?, ?, ?, ?, ?, ?)",
+            (
+                (number, one.id, one.title, one.words, one.text, " ".join(_PARTS.findall(one.id)))
+                for number, one in enumerate(self.entries)
+            ),
+        )
+        return table
 
     @cached_property
-    def _counts(self) -> list[dict[str, float]]:
-        """Weighted count of each word of each entry."""
-        counts = []
-        for entry in self.entries:
-            words: dict[str, float] = {}
-            for name, text in entry.fields.items():
-                for word in tokens(text):
-                    words[word] = words.get(word, 0.0) + _WEIGHTS[name]
-            counts.append(words)
-        return counts
+    def _vocabulary(self) -> list[str]:
+        self._table.execute("CREATE VIRTUAL TABLE term USING fts5vocab(entry, row)")
+        return [term for (term,) in self._table.execute("SELECT term FROM term")]
 
-    @cached_property
-    def _lengths(self) -> list[float]:
-        """Length of each entry over the mean."""
-        totals = [sum(words.values()) for words in self._counts]
-        mean = sum(totals) / max(len(totals), 1) or 1.0
-        return [total / mean for total in totals]
-
-    @cached_property
-    def _vocabulary(self) -> dict[str, list[int]]:
-        """Entries by word."""
-        found: dict[str, list[int]] = {}
-        for number, words in enumerate(self._counts):
-            for word in words:
-                found.setdefault(word, []).append(number)
-        return dict(sorted(found.items()))
-
-    @cached_property
-    def _letters(self) -> list[tuple[str, int]]:
-        """Words with the set of their characters as bits: what cannot be near is soon passed."""
-        return [(word, _bits(word)) for word in self._vocabulary]
-
-    def _scores(self, word: str) -> Mapping[int, float]:
-        """Return what each entry scores for a word of the vocabulary."""
-        if word not in self._found:
-            holders = self._vocabulary[word]
-            rarity = math.log1p((len(self.entries) - len(holders) + 0.5) / (len(holders) + 0.5))
-            self._found[word] = {
-                n: rarity * count * (_K1 + 1) / (count + _K1 * (1 - _B + _B * self._lengths[n]))
-                for n in holders
-                for count in (self._counts[n][word],)
-            }
-        return self._found[word]
-
-    def _meant(self, word: str) -> dict[str, float]:
-        """Return words of the vocabulary that a word of the question can mean, with discounts.
-
-        Slips are allowed for only where nothing is spelt so or begins so.
-        """
-        meant = {word: 1.0} if word in self._vocabulary else {}
-        if len(word) >= _SHORTEST_BEGINNING:
-            for other in self._vocabulary:
-                if other != word and other.startswith(word):
-                    meant[other] = _BEGINS
-        if meant or word.isdigit():
-            return meant
-        slips = 0 if len(word) < 4 else 1 if len(word) < 8 else 2
-        bits = _bits(word)
-        for other, others in self._letters:
-            if abs(len(other) - len(word)) > slips or (bits ^ others).bit_count() > 2 * slips:
-                continue
-            distance = slips_between(word, other)
-            if 0 < distance <= slips:
-                meant[other] = _SLIPPED[distance]
-        return meant
+    def _meant(self, word: str) -> str:
+        """Return the words that a word of the question can mean, as FTS5 takes them."""
+        known = [one for one in self._vocabulary if one.startswith(word)]
+        if word in known and len(word) < _SHORTEST_BEGINNING:
+            known = [word]
+        elif not known and len(word) >= _SHORTEST_SLIP and not word.isdigit():
+            known = get_close_matches(word, self._vocabulary, cutoff=_LIKE)
+        return " OR ".join(f'"{one}"' for one in known) or '""'
 
 
-def tokens(text: str) -> Iterator[str]:
-    """Yield the words of a text without case and accents; of `Liebe2001` its parts, too."""
+def tokens(text: str) -> list[str]:
+    """Return the words of a text, each once, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
     plain = "".join(c for c in plain if not unicodedata.combining(c))
-    for run in _RUN.findall(plain):
-        yield run
-        parts = _PARTS.findall(run)
-        if len(parts) > 1:
-            yield from parts
-
-
-def slips_between(one: str, other: str) -> int:
-    """Return how many letters have to be added, left out, changed or swapped with the next.
-
-    The optimal string alignment distance (Damerau 1964, no letter touched twice).
-    """
-    before: list[int] = []
-    row = list(range(len(other) + 1))
-    for i, letter in enumerate(one, start=1):
-        last, before, row = before, row, [i]
-        for j, target in enumerate(other, start=1):
-            cost = letter != target
-            best = min(row[j - 1] + 1, before[j] + 1, before[j - 1] + cost)
-            if i > 1 and j > 1 and letter == other[j - 2] and one[i - 2] == target:
-                best = min(best, last[j - 2] + 1)
-            row.append(best)
-    return row[-1]
-
-
-def excerpt(entry: Entry, words: Collection[str]) -> str:
-    """Return a part of an entry's text about the first of the words, cut between words."""
-    text = entry.text or entry.words
-    if len(text) <= EXCERPT:
-        return text
-    at = next(
-        (
-            run.start()
-            for run in _RUN.finditer(text)
-            if not set(tokens(run.group())).isdisjoint(words)
-        ),
-        0,
-    )
-    start = max(0, min(at - EXCERPT // 3, len(text) - EXCERPT))
-    if start:
-        start = text.find(" ", start) + 1
-    end = start + EXCERPT
-    if end < len(text):
-        end = max(text.rfind(" ", start, end), start + 1)
-    return f"{'… ' if start else ''}{text[start:end].strip()}{' …' if end < len(text) else ''}"
-
-
-def _bits(word: str) -> int:
-    bits = 0
-    for letter in word:
-        bits |= 1 << (ord(letter) % 61)
-    return bits
+    return list(dict.fromkeys(re.findall(r"[^\W_]+", plain)))
