@@ -17,18 +17,9 @@ from api.user_cache import user_cache
 def ask(
     function: Callable[..., Document], query: Mapping[str, Any] | None = None, **parts: str
 ) -> Document:
-    """Return the service's document.
+    """Return the service's document; None and empty lists ask nothing.
 
-    Parameters
-    ----------
-    function : of the service
-    query : by parameter name; None and empty lists ask nothing
-    parts : variable parts of the path
-
-    Raises
-    ------
-    WrongCallError
-        For a value that is not valid, naming the option and the nearest valid value.
+    A value that is not valid is a `WrongCallError`, with the option and the nearest valid value.
     """
     given = {name: value for name, value in (query or {}).items() if value not in (None, [], ())}
     arguments = parts if query is None else {**parts, "query": given}

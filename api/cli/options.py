@@ -40,14 +40,7 @@ def asked_by(
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command the parameters of a query as options, in place of its argument `asked`.
 
-    Parameters
-    ----------
-    model
-        Of the query.
-    names
-        Parameters that become options, in order.
-    renamed
-        Parameter -> name of the option, where it is another.
+    Options are called as their parameters are, but for those of `renamed`.
     """
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
@@ -79,17 +72,7 @@ def asked_by(
 
 
 def option_of(model: type[BaseModel], name: str, option: str | None = None) -> Any:
-    """Return the annotated type of an option that is a parameter of a query.
-
-    Parameters
-    ----------
-    model
-        Of the query.
-    name
-        Of the parameter.
-    option
-        Name of the option, where it is another.
-    """
+    """Return the annotated type of an option that is a parameter of a query."""
     field = model.model_fields[name]
     default = _default(field)
     kinds = list(_kinds(field.annotation))

@@ -155,15 +155,7 @@ def say(words: str, then: str = "") -> None:
 
 
 def prose(words: str, width: int, then: str = "", first: str = "") -> list[str]:
-    """Return a sentence in lines, no longer than are read with ease.
-
-    Parameters
-    ----------
-    words : of the sentence
-    width : of a line
-    then : before the second and further lines
-    first : before the first, as long as `then`
-    """
+    """Return a sentence in lines that are read with ease; `first` and `then` stand before them."""
     return _wrapped(words, min(width, PROSE), first, then)
 
 

@@ -26,34 +26,13 @@ def _is_stated(context: typer.Context, name: str) -> bool:
 
 
 def only_beside(context: typer.Context, what: str, *allowed: str) -> None:
-    """Refuse the options of a call that would be passed over in silence.
-
-    Parameters
-    ----------
-    context : of the call
-    what : the option or argument that the others do not apply to
-    allowed : options that do
-    """
+    """Refuse the options of a call, but those allowed, that do not apply beside `what`."""
     if others := [name for name in given(context) if name not in {what, *allowed}]:
         raise WrongCallError(f"{what} goes without {', '.join(others)}")
 
 
-def refuse(name: str, value: object, expected: str, nearest: str | None = None) -> WrongCallError:
-    """Return the error of a value of an option.
-
-    Parameters
-    ----------
-    name : of the option, or of the parameter of the service that it stands for
-    value : what was given
-    expected : what would have been right, in words
-    nearest : the valid value most like it, if any
-    """
-    option = f"--{name.replace('_', '-')}"
-    return WrongCallError(f"{option}: {unfit(value, expected, nearest)}")
-
-
 def unfit(value: object, expected: str, nearest: str | None = None) -> str:
-    """Say that a value does not fit, and what would; parameters as of `refuse`."""
+    """Say that a value does not fit, and what would; `nearest` is the valid value most like it."""
     text = f"{value:g}" if isinstance(value, float) else str(value)
     try:
         number = float(text)

@@ -60,14 +60,7 @@ def get(
 
 
 async def fetch_answer(service: ASGIApp, path: str, query: str, accept: bytes) -> tuple[int, bytes]:
-    """Return status and body of a GET that an ASGI application answers.
-
-    Parameters
-    ----------
-    service : the application
-    path, query : of the address, as they are written there
-    accept : media type
-    """
+    """Return status and body of a GET that an ASGI application answers."""
     scope = {
         "type": "http",
         "asgi": {"version": "3.0"},

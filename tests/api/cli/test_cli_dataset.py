@@ -69,35 +69,6 @@ def test_verify_passes_then_names_what_was_changed(made, tmp_path):
     assert row["problem"].startswith("SHA-256 is")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("arguments", "code", "says"),
-    [
-        (("export", "pd-maskless-cub", "--out", "x"), 1, "'pd-maskless-cube'"),
-        (("export", CUBE, "--out", "x", "--condition", "nominl"), 1, "'nominal'"),
-        (("export", CUBE, "--out", "x", "--split", "tests"), 1, "'test'"),
-        (("export", CUBE, "--out", "x", "--n", "0"), 2, "--n"),
-        (("export", CUBE), 2, "--out"),
-        (("verify", "nowhere"), 1, "not an export"),
-        (("preview", CUBE, "--out", "x", "--condition", "nominl"), 1, "'nominal'"),
-        (("preview", "ccd-lens", "--out", "x", "--overlay", "hough-line"), 1, "'hough-lines'"),
-        (("albedo", "pd-maskless-pyramid"), 1, "no cube"),
-        (("albedo", "pd-orbit"), 1, "no condition 'albedo'"),
-        (("albedo", "ccd-orbit"), 1, "random directions"),
-        (("exprot", CUBE), 2, "'export'"),
-    ],
-)
-def test_wrong_calls_are_one_line_and_write_nothing(tmp_path, monkeypatch, arguments, code, says):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(dataset, "PUBLISHED", tmp_path / "published")
-    shown = sunatlas(*arguments)
-    assert shown.exit_code == code
-    assert shown.stdout == ""
-    assert shown.stderr.count("\n") == 1
-    assert says in shown.stderr
-    assert not (tmp_path / "x").exists()
-
-
 def test_coverage_is_the_table_in_every_format():
     found = coverage()
     document = json.loads(sunatlas("coverage", "--format", "json").stdout)

@@ -76,33 +76,6 @@ def test_the_command_and_the_service_say_the_same(atlas, arguments, path, listed
     assert served[listed]
     table = list(csv.DictReader(io.StringIO(sunatlas(*arguments, "--format", "csv"))))
     assert table == atlas.table(path)
-    assert len(table) == len(served[listed])
-    numbers = [name for name, value in served[listed][0].items() if isinstance(value, float)]
-    assert numbers
-    for line, row in zip(table, served[listed], strict=True):
-        assert [float(line[name]) if line[name] else None for name in numbers] == [
-            row[name] for name in numbers
-        ], "whole numbers, not those of the screen"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (["--overview", "--dataset", "ccd-lens"], "--overview counts over data sets"),
-        (["--overview", "--check"], "--check takes all that is published: leave out --overview"),
-        (["--check", "--dataset", "ccd-lens"], "leave out --dataset"),
-        (["--workers", "2"], "--workers goes with --check"),
-        (["--detector", "QPD", "--each"], "--detector and --mask narrow architectures"),
-        (["--mask", "Slit", "--check"], "leave out --mask"),
-        (["--detector", "QPDs"], "--detector: no 'QPDs'"),
-        (["--detector", "QPD", "--mask", "Slit"], "nothing is published of such"),
-    ],
-)
-def test_a_call_that_asks_for_two_things_is_refused_in_a_line(arguments, says):
-    shown = CliRunner().invoke(app, ["leaderboard", *arguments], catch_exceptions=False)
-    assert shown.exit_code == 2
-    assert says in shown.stderr
-    assert shown.stderr.count("\n") == 1
 
 
 def test_findings_are_those_of_the_readme_and_come_with_their_pairs():

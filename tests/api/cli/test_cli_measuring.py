@@ -148,25 +148,6 @@ def test_the_leaderboard_is_shown_and_nothing_is_measured(tmp_path, monkeypatch)
     assert not (tmp_path / "working").exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "says"),
-    [
-        (["--field", "25"], 2, "25; expected one of 10, 20"),
-        (["--dataset", "ccd-orbt"], 1, "did you mean 'ccd-orbit'?"),
-        (["--stored"], 2, "--stored goes with --check"),
-        (["--kernels", "older"], 2, "--kernels goes with --check"),
-        (["--field", "20", "--max-error", "1"], 2, "one at a time"),
-        (["--dataset", "ccd-orbit", "update"], 2, "--dataset before `update`"),
-    ],
-)
-def test_a_wrong_call_of_leaderboard_is_a_line(arguments, code, says):
-    shown = sunatlas("leaderboard", *arguments)
-    assert shown.exit_code == code
-    assert shown.stderr.startswith("sunatlas: ")
-    assert says in shown.stderr
-    assert shown.stderr.count("\n") == 1
-
-
 @pytest.mark.slow
 def test_the_committed_leaderboard_is_what_its_code_gives(published):
     shown = sunatlas("leaderboard", "--check", "--stored")

@@ -107,7 +107,3 @@ def test_a_record_that_holds_is_verified_and_nothing_is_written(
     assert drawn["seed"] == 7
     assert {path: path.read_bytes() for path in published.directory.rglob("*.csv")} == before
     assert not small.exists()
-
-
-def test_nothing_published_is_nothing_to_verify(small: Path) -> None:
-    assert "nothing is published in" in CliRunner().invoke(app, ["verify"]).stderr

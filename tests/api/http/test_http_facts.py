@@ -115,18 +115,6 @@ def test_a_study_is_shown_by_its_score_where_it_stands_for_it(atlas):
             assert study["headline"] is None
 
 
-def test_csv_and_json_say_the_same_of_studies(atlas):
-    items = atlas.get("/v1/studies?detector=QPD").json()["items"]
-    rows = atlas.table("/v1/studies?detector=QPD")
-    assert len(rows) == len(items) > 0
-    for row, item in zip(rows, items, strict=True):
-        for name in ("key", "title", "authors", "venue", "doi", "url", "identity", "state"):
-            assert row[name] == item[name]
-        assert row["year"] == str(item["year"])
-        for attribute in ATTRIBUTES:
-            assert row[attribute] == "; ".join(item["values"].get(attribute, []))
-
-
 def test_the_taxonomy_is_the_table(atlas):
     served = atlas.get("/v1/taxonomy").json()["attributes"]
     flat = [{"attribute": a, **entry} for a, entries in served.items() for entry in entries]

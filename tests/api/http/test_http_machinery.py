@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from api.service.problems import Problem
 from api.web.negotiation import CSV, JSON, media_type
-from survey_data.nearest import nearest_name
 
 fuzz = settings(deadline=None, derandomize=True)
 
@@ -57,12 +56,3 @@ def test_nothing_acceptable_is_a_406(accept):
 @given(st.text(max_size=60))
 def test_any_accept_header_is_answered_or_refused(header):
     assert answered(media_type, header, (JSON, CSV)) in (JSON, CSV, 406)
-
-
-@fuzz
-@given(st.text(max_size=80), st.lists(st.text(min_size=1, max_size=20), max_size=5))
-def test_the_nearest_is_one_of_the_valid(text, valid):
-    found = nearest_name(text, valid, cutoff=0)
-    assert found is None or found in valid
-    for word in valid:
-        assert nearest_name(word, [word], cutoff=0) is not None or not word.strip()

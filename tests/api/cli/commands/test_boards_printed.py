@@ -121,8 +121,3 @@ def test_a_condition_that_no_data_set_asked_for_has_leaves_nothing() -> None:
     assert json.loads(shown.stdout) == {"items": [], "total": 0}
     assert shown.stderr == "sunatlas: no pipeline has such an error there\n"
     assert sunatlas("leaderboard", "--each", "--condition", "hot", "--max-error", 0).exit_code == 1
-
-
-# ---- rank
-
-NEW, REASON = "voltage-balance", "needs more poses"

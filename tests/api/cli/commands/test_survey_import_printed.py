@@ -62,12 +62,6 @@ def test_a_confirmed_study_said_otherwise_is_named_and_replaced_only_where_asked
 # ---- a table
 
 
-def test_replacing_is_of_a_bibliography_alone(tmp_path: Path) -> None:
-    refused = survey(table(tmp_path, "Key,Mask\n"), "--replace", CONFIRMED)
-    assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "--replace is of a bibliography, not of a table" in refused.stderr
-
-
 def test_a_column_that_is_given_two_meanings_is_refused(tmp_path: Path) -> None:
     refused = survey(
         *(table(tmp_path, "Key,a=b\n"), "--map", "a=b=mask", "--map", "a=b=mask"),
