@@ -14,9 +14,6 @@ from importlib.resources import files
 
 from registry.studies import facts
 
-COLUMNS = ("term", "name", "meaning", "see", "avoid")
-_FILLED = COLUMNS[:3]
-
 #: What a value of an attribute is, where the taxonomy tells a name and a category alone.
 _KINDS = {
     "model": "Calibration model",
@@ -27,10 +24,6 @@ _KINDS = {
     "mask": "Mask",
     "accuracy": "Accuracy class",
 }
-
-
-class GlossaryError(ValueError):
-    """The table of terms is not as it should be; the message names the line."""
 
 
 @dataclass(frozen=True)
@@ -70,11 +63,6 @@ def glossary() -> tuple[Term, ...]:
     """Return every term, the project's own and the survey's values, by the alphabet.
 
     A value has its name from the taxonomy, and its meaning from the table where that has it.
-
-    Raises
-    ------
-    GlossaryError
-        Where `glossary.csv` has other columns, an empty cell, or a term twice.
     """
     survey = _survey()
     values = {one.term for one in survey}
@@ -84,21 +72,13 @@ def glossary() -> tuple[Term, ...]:
 
 @cache
 def words() -> tuple[Term, ...]:
-    """Return the table's terms, by the alphabet; raises as `glossary`."""
+    """Return the table's terms, by the alphabet."""
     text = (files("api") / "glossary.csv").read_text("utf-8")
-    reader = csv.DictReader(text.splitlines())
-    if tuple(reader.fieldnames or ()) != COLUMNS:
-        raise GlossaryError(f"glossary.csv: expected columns {COLUMNS}; got {reader.fieldnames}")
-    found: dict[str, Term] = {}
-    for line, row in enumerate(reader, start=2):
-        if None in row or not all(row[name] for name in _FILLED):
-            filled = ", ".join(_FILLED)
-            raise GlossaryError(f"glossary.csv, line {line}: expected {filled} to be filled")
-        if row["term"] in found:
-            raise GlossaryError(f"glossary.csv, line {line}: {row['term']!r} stands there twice")
+    found = []
+    for row in csv.DictReader(text.splitlines()):
         avoided = tuple(filter(None, row.pop("avoid").split("; ")))
-        found[row["term"]] = Term(kind="term", avoided=avoided, **row)
-    return tuple(sorted(found.values(), key=lambda one: one.term.casefold()))
+        found.append(Term(kind="term", avoided=avoided, **row))
+    return tuple(sorted(found, key=lambda one: one.term.casefold()))
 
 
 def _survey() -> tuple[Term, ...]:
