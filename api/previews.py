@@ -6,23 +6,20 @@ draws. `python -m api.previews --publish` draws those that lack and removes thos
 
 Where the code has been changed since, a picture is drawn when somebody asks for it, by a process
 of its own (within the service it would hold up all other answers), and kept in the working store:
-`python -m api.previews DIRECTORY NAME...` draws those that are not there yet. What is kept there
-lies below a digest of all code that makes it; it may be deleted at any time.
+`python -m api.previews DIRECTORY NAME...` draws those that are not there yet. They are named as the
+published ones are, and may be deleted at any time.
 """
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import os
-import shutil
 import subprocess
 import sys
 import threading
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 from benchmark.processes import call_to_end, for_coordinator
@@ -32,33 +29,17 @@ from files.locks import wait_for_lock
 #: Pictures that come with the code, ``<data set>.<digest of what it shows>.png``.
 PUBLISHED = Path(__file__).resolve().parents[1] / "benchmark" / "datasets" / "previews"
 FOLDER = "previews"
-#: Pictures of other code that are left where they are: another checkout may serve them.
-OTHERS_KEPT = 3
 #: Pictures that are drawn at once for whoever asks.
 AT_ONCE = 2
 
 _ROOT = Path(__file__).resolve().parents[1]
-_MAKERS = ("algorithms", "benchmark", "files", "survey_data")
 #: What a picture is made by, beside the data set.
 _DRAWN_BY = "benchmark.datasets.preview"
-_DRAWING_WITH = ("matplotlib", "numpy", "scipy", "opencv-python-headless")
-
-
-@cache
-def digest() -> str:
-    """Return the digest of all that a picture is made by, code and libraries."""
-    found = hashlib.sha256(" ".join(map(version, _DRAWING_WITH)).encode())
-    for package in _MAKERS:
-        for path in sorted((_ROOT / package).rglob("*.py")):
-            content = path.read_bytes()
-            found.update(f"{path.relative_to(_ROOT)} {len(content)}\n".encode())
-            found.update(content)
-    return found.hexdigest()[:16]
 
 
 def place(directory: Path, name: str) -> Path:
     """Return where the picture of a data set is kept in a working store."""
-    return directory / FOLDER / digest() / f"{name}.png"
+    return directory / FOLDER / f"{name}.{_show(name)}.png"
 
 
 def published_preview(name: str) -> Path:
@@ -154,15 +135,6 @@ def publish() -> None:
         found.unlink()
 
 
-def forget_others(directory: Path) -> None:
-    """Remove pictures of other code, but the newest."""
-    folder = directory / FOLDER
-    others = [found for found in folder.iterdir() if found.is_dir() and found.name != digest()]
-    others.sort(key=lambda found: found.stat().st_mtime, reverse=True)
-    for found in others[OTHERS_KEPT:]:
-        shutil.rmtree(found, ignore_errors=True)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Draw; the exit status."""
     parser = argparse.ArgumentParser(prog="python -m api.previews", description="Draw data sets.")
@@ -176,7 +148,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         publish()
         return 0
     draw(given.directory, given.names)
-    forget_others(given.directory)
     return 0
 
 

@@ -36,23 +36,30 @@ class Knowledge:
     ----------
     measurements : the published ones by default
     working : directory where pictures that had to be drawn are kept; None keeps none
+    survey : knowledge of the survey's studies, to which those that it does not map are added. What
+        runs for a study of the survey is what it is without them: none of them is its relative
     """
 
-    edition: Choice = "survey"
-
     def __init__(
-        self, measurements: Measurements | None = None, working: Path | None = None
+        self,
+        measurements: Measurements | None = None,
+        working: Path | None = None,
+        survey: Knowledge | None = None,
     ) -> None:
         self.measurements = Measurements() if measurements is None else measurements
         self.working = working
+        self._survey = survey
+        self.edition: Choice = "survey" if survey is None else "all"
 
     def of(self, edition: Choice) -> Knowledge:
         """Return the same with the studies of an edition; only these are not shared."""
-        return self if edition == self.edition else self._with_later
+        if edition == self.edition:
+            return self
+        return self._with_later if self._survey is None else self._survey
 
     @cached_property
     def _with_later(self) -> Knowledge:
-        return KnowledgeOfAll(self)
+        return Knowledge(self.measurements, self.working, survey=self)
 
     @cached_property
     def facts(self) -> Facts:
@@ -79,14 +86,28 @@ class Knowledge:
     @cached_property
     def catalogue(self) -> Catalogue:
         """The implementations. The first use imports every one of them."""
-        return catalogue()
+        return catalogue() if self._survey is None else self._survey.catalogue
 
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import study_plans  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import (  # noqa: PLC0415 - loads the simulator
+            scorable_plan,
+            study_plans,
+        )
+        from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
-        return self._resolve(study_plans())
+        if self._survey is None:
+            return self._resolve(study_plans())
+        later = resolve_later(
+            scorable_plan(),
+            self._survey.facts,
+            self.facts,
+            data_sets=data_sets(),
+            catalogue=self.catalogue,
+            scores=self.measurements.own_errors,
+        )
+        return {**self._survey.resolutions, **later}
 
     @cached_property
     def standard_resolutions(self) -> Mapping[str, Resolution]:
@@ -111,11 +132,15 @@ class Knowledge:
         """What is measured of pairs of values, what could be, and what cannot."""
         from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
 
+        if self._survey is not None:
+            return self._survey.evidence
         return Evidence(self.catalogue, self.measurements.pipelines, scorable_plan())
 
     @cached_property
     def measured_pipelines(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
+        if self._survey is not None:
+            return self._survey.measured_pipelines
         return Measured(self.measurements.pipelines)
 
     @cached_property
@@ -135,7 +160,7 @@ class Knowledge:
     @cached_property
     def index(self) -> Index:
         """What search finds."""
-        return Index(entries(self))
+        return Index(entries(self)) if self._survey is None else self._survey.index
 
     def load_all(self) -> None:
         """Load everything now, so that no request has to wait for it.
@@ -157,58 +182,3 @@ class Knowledge:
         _ = self.facts_digest, self.measurements.digest
         _ = self.of("all").resolutions, self.editions
         design_table(self.facts, self.measured_pipelines)
-
-
-class KnowledgeOfAll(Knowledge):
-    """The same knowledge, with the studies the survey does not map among the others.
-
-    What runs for a study of the survey is what it is without them: none of them is its relative.
-
-    Parameters
-    ----------
-    survey : the knowledge of the survey's studies
-    """
-
-    edition: Choice = "all"
-
-    def __init__(self, survey: Knowledge) -> None:
-        super().__init__(survey.measurements, survey.working)
-        self._survey = survey
-
-    def of(self, edition: Choice) -> Knowledge:
-        """Return the same with the studies of an edition."""
-        return self if edition == self.edition else self._survey
-
-    @property
-    def catalogue(self) -> Catalogue:
-        """The implementations."""
-        return self._survey.catalogue
-
-    @cached_property
-    def resolutions(self) -> Mapping[str, Resolution]:
-        """What is scored of each study, by key."""
-        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
-        from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
-
-        ours, facts = self._survey.resolutions, (self._survey.facts, self.facts)
-        shown, catalogue = data_sets(), self.catalogue
-        scores = self.measurements.own_errors
-        later = resolve_later(
-            scorable_plan(), *facts, data_sets=shown, catalogue=catalogue, scores=scores
-        )
-        return {**ours, **later}
-
-    @property
-    def evidence(self) -> Evidence:
-        """What is measured of pairs of values, what could be, and what cannot."""
-        return self._survey.evidence
-
-    @property
-    def measured_pipelines(self) -> Measured:
-        """What is measured of every pipeline, as recommendations take it."""
-        return self._survey.measured_pipelines
-
-    @property
-    def index(self) -> Index:
-        """What search finds."""
-        return self._survey.index

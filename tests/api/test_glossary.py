@@ -1,5 +1,7 @@
 """The glossary: every abbreviation of the survey and every term of ours, each once."""
 
+from collections import Counter
+
 from api import glossary as module
 from api.glossary import glossary
 from registry.studies import facts
