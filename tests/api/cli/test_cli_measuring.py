@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from api.cli import measuring, working
+from api.cli import measuring
 from api.cli.command_line import app
 from api.cli.commands import leaderboard
+from api.user_cache import user_cache
 from benchmark.contract import Cell
 from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.parts import installed_parts
@@ -109,8 +110,7 @@ def test_the_working_store_is_where_it_is_said_to_be(monkeypatch, environment, e
         monkeypatch.delenv(name, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert working.working_directory() == expected
-    assert working.working_directory(Path("given")) == Path("given")
+    assert user_cache() == expected
 
 
 # ---- leaderboard

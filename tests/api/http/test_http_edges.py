@@ -12,16 +12,13 @@ import pytest
 from fastapi import FastAPI, HTTPException
 from prometheus_client.parser import text_string_to_metric_families
 from prometheus_client.values import MultiProcessValue
-from starlette.types import Message, Scope
 
 from api.server.app import create_app
 from api.service import calibrations
 from api.service.asking import ask
 from api.service.knowledge import Knowledge
-from api.service.problems import Problem
 from api.service.studies import studies
-from api.web import observation, requests
-from api.web.requests import StrictRequest
+from api.web import observation
 from tests.api.conftest import Client
 
 
@@ -40,9 +37,6 @@ def test_numbers_of_all_workers_are_added_up(
         for sample in family.samples
     }
     assert found == {"sunatlas_http_requests_total": 5.0}
-
-
-SCOPE: Scope = {"type": "http", "method": "GET", "path": "/x", "query_string": b"", "headers": []}
 
 
 def test_a_status_of_the_framework_is_a_problem_named_after_it(
@@ -69,24 +63,6 @@ def test_a_second_calibration_at_once_is_told_when_to_come_back(
     answer = client_of(create_app(Knowledge())).post("/v1/calibrations", files=files)
     assert (answer.status_code, answer.headers["retry-after"]) == (503, "30")
     assert answer.json()["type"].endswith(":busy")
-
-
-def test_a_body_without_an_end_is_read_no_further_than_the_limit(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(requests, "LARGEST_JSON", 40)
-    sent = 0
-
-    async def receive() -> Message:
-        nonlocal sent
-        sent += 15
-        return {"type": "http.request", "body": bytes(15), "more_body": True}
-
-    scope = {**SCOPE, "headers": [(b"content-type", b"application/json")]}
-    with pytest.raises(Problem) as refused:
-        asyncio.run(StrictRequest(scope, receive).body())
-    assert (refused.value.status_code, sent) == (413, 45)
-    assert "at most 40 bytes" in refused.value.detail
 
 
 @pytest.mark.parametrize("asked", [{"year_min": 0}, {"year_max": 9999}])
