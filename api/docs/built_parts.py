@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-import pandas as pd
 from typer.testing import CliRunner
 
 from api.addresses import algorithm_page
@@ -18,10 +17,7 @@ from api.docs.knowledge import knowledge
 from api.guide.site import source
 from api.pages.methods import docstring_parts
 from benchmark.assessment.definitions import DEFINITIONS
-from benchmark.error_budget.record import RECORD as ERROR_BUDGET
-from benchmark.error_budget.sentences import verdict
 from benchmark.leaderboard.headlines import Headline, headlines
-from benchmark.learning_curves.record import published_curves
 from survey_data.descriptor import descriptor
 
 
@@ -73,26 +69,12 @@ def models() -> str:
     return "\n\n".join(f"### {name}\n\n" + "\n\n".join(found) for name, found in listed.items())
 
 
-def error_sources() -> str:
-    """Say of every best pipeline that is not near its bound what limits it."""
-    judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
-    return "\n".join(f"- {one.sentence}" for one in judged if not one.is_near_bound)
-
-
 def published_figures() -> str:
     """Set every accuracy and precision that a study publishes beside ours, the worst first."""
     known = knowledge()
     every = headlines(known.measurements.score_of, known.facts.studies.values(), known.resolutions)
     header = ("study", "quantity", "published, deg", "ours, deg", "ratio", "pipeline", "difference")
     return table(header, map(_headline, every))
-
-
-def poses_needed() -> str:
-    """List the first leader of each data set: poses it needs, poses there are, its floor."""
-    rows = pd.DataFrame(published_curves()).drop_duplicates("dataset")
-    rows = rows.assign(pipeline=rows["extractor"] + " + " + rows["model"])
-    shown = ["dataset", "pipeline", "needed_poses", "needed_low", "needed_high", "poses"]
-    return _frame(rows[[*shown, "floor_error_deg", "over_bound"]])
 
 
 def definitions() -> str:
@@ -111,24 +93,13 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "command-line": command_line,
     "facts": tables_of_facts,
     "models": models,
-    "error-sources": error_sources,
     "published-figures": published_figures,
-    "poses-needed": poses_needed,
     "definitions": definitions,
 }
 
 
 def _cell(text: str) -> str:
     return " ".join(text.split()).replace("|", "\\|")
-
-
-def _frame(frame: pd.DataFrame) -> str:
-    """Write a data frame: words of its columns, numbers of three digits, a dash for none."""
-    cells = frame.astype(object).where(frame.notna(), "–")
-    rows = (
-        [f"{c:.3g}" if isinstance(c, float) else str(c) for c in row] for row in cells.to_numpy()
-    )
-    return table([name.replace("_", " ") for name in frame.columns], rows)
 
 
 def _described(resource: Mapping[str, Any]) -> str:
