@@ -9,7 +9,6 @@ import hashlib
 import json
 import re
 import threading
-import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
@@ -25,7 +24,7 @@ class StandIn:
     """An archive in this process; `with` it is served at `address`.
 
     `fault(step, kind, times)` has so many requests of a step fail: with a status, "drop before"
-    (nothing is done), "drop after" (the work is done, the answer is lost), "hold" (no answer),
+    (nothing is done), "drop after" (the work is done, the answer is lost),
     "wrong checksum", or with bytes that are sent as they are.
     """
 
@@ -34,7 +33,6 @@ class StandIn:
         self.records: dict[str, dict[str, Any]] = {}
         self.asked: list[tuple[str, str]] = []
         self.faults: dict[str, list[Any]] = {}
-        self.held = threading.Event()
         self.signed: set[str | None] = set()
         #: Summed behind what is sent, so that a checksum is wrong.
         self.extra = b""
@@ -182,7 +180,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.stand_in.signed.add(self.headers.get("Authorization"))
         faults = self.stand_in.faults.get(step)
         kind = faults.pop(0) if faults else None
-        if isinstance(kind, bytes) or kind in {"drop before", "hold"}:
+        if isinstance(kind, bytes) or kind == "drop before":
             self._break(kind)
             return
         if isinstance(kind, int):
@@ -204,9 +202,6 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _break(self, kind: Any) -> None:
         self.close_connection = True
-        if kind == "hold":
-            self.stand_in.held.set()
-            time.sleep(20)
         with suppress(OSError):  # the client may have had enough of it
             if isinstance(kind, bytes):
                 self.connection.sendall(kind)

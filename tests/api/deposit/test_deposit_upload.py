@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import gzip
-import json
 import os
-import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -225,35 +221,6 @@ def test_a_bundle_that_does_not_hold_or_a_draft_that_is_none_is_not_sent(journey
         with pytest.raises(ArchiveError, match=r"README\.md"):
             journey.upload()
     assert [step for step, _ in journey.archive.asked] == ["draft"]
-
-
-def test_a_draft_deleted_by_hand_is_replaced(journey):
-    first = journey.upload().draft.id
-    del journey.archive.drafts[first]
-    journey.archive.records["x"] = {}
-    again = journey.upload().draft.id
-    assert again != first
-    assert journey.is_whole(again)
-
-
-@pytest.mark.slow
-def test_a_killed_upload_goes_on_where_it_was(journey):
-    journey.archive.faults["send"] = [None, None, "hold"]
-    command = [*(sys.executable, "-m", "api.cli.command_line", "deposit", "upload"), "--bundle"]
-    command += [str(journey.bundle), "--server", journey.archive.address]
-    environment = {**os.environ, "ARCHIVE_TOKEN": TOKEN}
-    first = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
-    assert journey.archive.held.wait(120)
-    first.send_signal(signal.SIGKILL)
-    assert first.communicate()[1].count("sent: ") == 2
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert TOKEN not in done.stdout + done.stderr
-    (draft,) = journey.archive.drafts
-    assert journey.is_whole(draft)
-    assert len(journey.archive.sent()) == 6
-    remembered = json.loads(journey.bundle.with_name("bundle.drafts.json").read_text())
-    kept = {"draft": draft, "version_of": None}
-    assert remembered == {f"{journey.archive.address} records": kept}
 
 
 def test_each_server_has_a_token_of_its_own(monkeypatch):
