@@ -52,7 +52,7 @@ _UNITS = frozenset(("px", "mm", "um", "us"))
 _NAME = re.compile(r"[\w.-]*")
 
 
-def tex(text: str) -> str | None:  # noqa: C901 - a case for each kind of sign
+def tex(text: str) -> str | None:  # noqa: C901, PLR0912 - a case for each kind of sign
     r"""Return a formula as LaTeX; None for what is none.
 
     Examples
@@ -81,6 +81,8 @@ def tex(text: str) -> str | None:  # noqa: C901 - a case for each kind of sign
         spaced = False
         operand = bool(match["number"] or match["name"] or match["close"] or operand)
         if match["sign"]:
+            if found == "'" and not operand:
+                return None
             operand = found in "'!|"
             parts.append(_SIGNS.get(found, found))
         elif match["below"] or match["above"]:
