@@ -92,31 +92,13 @@ def export(
 ) -> ExportResult:
     """Write a dataset to the directory `out`, whole or not at all.
 
-    Parameters
-    ----------
-    name
-        Of the dataset.
-    out
-        Directory to make.
-    conditions, splits
-        Which; all by default.
-    n
-        Only the first n samples of each split.
-    force
-        Replace an earlier export. Anything else in the way is refused all the same.
-    progress
-        Called as ``progress(done, total, what)`` in splits.
-    pins
-        Of the published data: their hashes are stated in the card beside those of what is written.
+    Of the conditions and splits named, or all, only the first `n` samples if given. `force`
+    replaces an earlier export; anything else in the way is refused all the same. `progress` is
+    called as ``progress(done, total, what)`` in splits. Hashes of `pins`, of the published data,
+    are stated in the card beside those of what is written.
 
-    Raises
-    ------
-    UnknownDatasetError, UnknownNameError
-        For a name that there is not, naming the nearest.
-    ExportError
-        Where `out` holds something.
-    ValueError
-        For n below 1.
+    UnknownDatasetError, UnknownNameError for a name that there is not, naming the nearest;
+    ExportError where `out` holds something; ValueError for n below 1.
     """
     preset = datasets.get(name)
     chosen = _choose("condition", conditions, preset.conditions)

@@ -36,10 +36,7 @@ def write_archive(path: Path, arrays: Arrays) -> None:
 def read_archive(path: Path) -> dict[str, NDArray[Any]]:
     """Read every array of an ``.npz``.
 
-    Raises
-    ------
-    ValueError
-        Where the file is no archive of arrays.
+    ValueError where the file is no archive of arrays.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:

@@ -50,25 +50,10 @@ def verify(
     against card and pins; then all of it against the same export made again. The first of these
     that finds anything is the last.
 
-    Parameters
-    ----------
-    directory
-        Of the export.
-    pins
-        Of the published data.
-    anew
-        Make the export again, which takes as long as it took to make it. Without it, of samples
-        that no pin is of only the first `samples.HEAD` are held against the published data, and of
-        bounds their root mean square.
-    progress
-        As of `export`.
-
-    Raises
-    ------
-    ExportError
-        Where the directory is no export, or its card cannot be read.
-    FileRefusedError
-        Where the list of checksums cannot be read.
+    `pins` are of the published data. Made `anew` takes as long as it took to make it; without it,
+    of samples that no pin is of only the first `samples.HEAD` are held against the published data,
+    and of bounds their root mean square. ExportError where the directory is no export, or its card
+    cannot be read; FileRefusedError where the list of checksums cannot be read.
     """
     directory = Path(directory)
     if not (directory / CHECKSUMS).is_file():

@@ -42,21 +42,9 @@ def overlay_png(
 ) -> bytes:
     """Draw what an extractor finds in a dataset's frames; returns PNG.
 
-    Parameters
-    ----------
-    preset : Preset
-        A dataset of frames.
-    extractor : type
-        An extractor of spots in frames that fits the dataset's design.
-    conditions : sequence of str, optional
-        A row of pictures each; all by default.
-
-    Raises
-    ------
-    OverlayError
-        On a dataset or an extractor of another kind.
-    ValueError
-        On an unknown condition, and where the extractor refuses the design.
+    A row of pictures for each condition, all by default. OverlayError on a dataset without frames
+    or an extractor of no spots, ValueError on an unknown condition, and where the extractor refuses
+    the design.
     """
     if preset.observation is not Observation.FRAMES or extractor.about.kind is not FeatureKind.SPOT:
         raise OverlayError(

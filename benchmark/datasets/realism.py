@@ -72,11 +72,8 @@ def hardware_match(dataset: str) -> HardwareMatch:
 def hardware_matches(path: Path = FILE) -> Mapping[str, HardwareMatch]:
     """Return what each data set of the table stands for, by name.
 
-    Raises
-    ------
-    RealismError
-        For a broken line, a data set that stands twice, an unknown sensor, and a line that has
-        both sensors and a reason why it has none, or neither.
+    RealismError for a broken line, a data set that stands twice, an unknown sensor, and a line that
+    has both sensors and a reason why it has none, or neither.
     """
     records = read_records(path, list(COLUMNS))
     if records.problems:

@@ -87,28 +87,12 @@ def check(
 ) -> list[Difference]:
     """Compare the committed record with what it follows from; an empty list is a pass.
 
-    Parameters
-    ----------
-    directory
-        Of the record.
-    workers, progress
-        As `benchmark.running.runner.run`.
-    stored_only
-        Leave out generating and measuring: only whether the files agree with each other, with the
-        versions and sizes of the data sets and with the code as it is, and the page with them.
-    kernels
-        To measure with: ``native``, ``older`` or both.
-    parts
-        Datasets and implementations; what is installed by default, and what older kernels take.
-
-    Raises
-    ------
-    StoreError, ComponentsError
-        When a stored file cannot be read.
-    NoOlderKernelsError, OlderRunError
-        When there are no older kernels to measure with, or their process failed.
-    RunInterruptedError
-        On Ctrl-C; nothing is kept.
+    `stored_only` leaves out generating and measuring: only whether the files agree with each other,
+    with the versions and sizes of the data sets and with the code as it is, and the page with them.
+    `kernels` to measure with are ``native``, ``older`` or both; `parts` are what is installed by
+    default, and what older kernels take. StoreError, ComponentsError when a stored file cannot be
+    read; NoOlderKernelsError, OlderRunError when there are no older kernels, or their process
+    failed; RunInterruptedError on Ctrl-C, nothing is kept.
     """
     store = Store(directory)
     known = parts or installed_parts()

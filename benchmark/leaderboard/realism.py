@@ -35,23 +35,11 @@ def realism(
 ) -> list[dict[str, Any]]:
     """Set each data set beside the sensors that it stands for.
 
-    Parameters
-    ----------
-    rows
-        Score rows as `Store.rows` gives them.
-    nominal
-        The condition compared, by data set.
-    known
-        What each data set stands for; the published table by default.
-
-    Returns
-    -------
-    list of dict
-        One a standard data set of the table, by name. ``sensors`` have ``accuracy_ratio`` (our
-        error over their accuracy) and ``precision_ratio`` beside their figures; the data set's own
-        ratios are 1 within the range of its sensors' and else those of the nearest. Numbers are
-        None where one of the two is unknown. ``unexplained_differences`` says whether a ratio is
-        beyond `FACTOR` and no sentence says why.
+    `rows` are of `Store.rows`, `nominal` is the condition compared, by data set. Of each standard
+    data set of the table, by name, ``sensors`` have ``accuracy_ratio`` (our error over their
+    accuracy) and ``precision_ratio`` beside their figures; the data set's own ratios are 1 within
+    the range of its sensors' and else those of the nearest. Numbers are None where one of the two
+    is unknown. ``unexplained`` says whether a ratio is beyond `FACTOR` and no sentence says why.
     """
     best: dict[str, Row] = {}
     for row in rows:

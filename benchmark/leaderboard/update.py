@@ -41,22 +41,10 @@ def update(
     pinned, whether anything can be measured on them or not; every extractor is measured on the
     reference features (`benchmark.sweeps`).
 
-    Parameters
-    ----------
-    directory
-        Of the record.
-    workers
-        Number of processes; the numbers do not depend on it.
-    progress, scheduler, parts
-        As `benchmark.running.runner.run`.
-
-    Raises
-    ------
-    UnversionedChangeError
-        Where data or bounds changed while their dataset's version did not. The first samples are
-        looked at before anything is measured; nothing is written.
-    StoreLockedError, DaskMissingError, RunInterruptedError
-        As `benchmark.running.runner.run`.
+    Other parameters and errors as `benchmark.running.runner.run`; the numbers do not depend on the
+    number of workers. UnversionedChangeError where data or bounds changed while their dataset's
+    version did not: the first samples are looked at before anything is measured, and nothing is
+    written.
     """
     started = time.perf_counter()
     known = parts or installed_parts()

@@ -64,24 +64,12 @@ def floor_of(
     A unit's curve is the median over draws of the squared error, at sizes where half of its draws
     count. Units have floors of their own, and poses help all alike: a and b are common.
 
-    Parameters
-    ----------
-    sizes
-        Numbers of poses (S,), ascending; the last is all of them.
-    errors_deg
-        Root mean square errors (U, D, S) by unit, draw and size; NaN where there is none.
-    counted
-        Which (U, D, S) of them count.
-    generator
-        Of the draws drawn anew.
-    lawful
-        Whether the law may be asked; False for poses that are not drawn at random.
+    Numbers of poses (S,) ascend, the last is all of them; errors (U, D, S) by unit, draw and size
+    are NaN where there is none, and `counted` says which of them count. `generator` is of the draws
+    drawn anew; not `lawful` are poses that are not drawn at random.
 
-    Returns
-    -------
-    Floor or None
-        The error with all poses where fewer than `FEWEST_SIZES` sizes count, or the law misses by
-        more than `WORST_MISFIT`; None where there is no error with all poses that counts.
+    The error with all poses where fewer than `FEWEST_SIZES` sizes count, or the law misses by more
+    than `WORST_MISFIT`; None where there is no error with all poses that counts.
     """
     errors = np.asarray(errors_deg, dtype=np.float64)
     usable = np.asarray(counted, dtype=np.bool_) & np.isfinite(errors)

@@ -112,10 +112,7 @@ class Components:
     def digest(self, kind: str, name: str) -> str:
         """Return the digest of a component, of a data set those of all its conditions.
 
-        Raises
-        ------
-        ComponentsError
-            Where there is none.
+        ComponentsError where there is none.
         """
         facts = self._facts(kind, name)
         return str(
@@ -200,10 +197,7 @@ class Components:
     def read(cls, path: Path) -> Components:
         """Return what a file holds; none where there is no file.
 
-        Raises
-        ------
-        ComponentsError
-            For another layout, or another metric than this one.
+        ComponentsError for another layout, or another metric than this one.
         """
         try:
             held = read_json(path)

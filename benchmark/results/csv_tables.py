@@ -96,11 +96,8 @@ def text_of(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
 def read_csv(path: Path, columns: Mapping[str, Reader]) -> list[tuple[int, Row]]:
     """Read (line number, row) of a table; nothing where there is no file.
 
-    Raises
-    ------
-    StoreError
-        For what is no file of text, another header, a line of other cells than columns, a cell
-        that cannot be read, or a last line that is cut off.
+    StoreError for what is no file of text, another header, a line of other cells than columns, a
+    cell that cannot be read, or a last line that is cut off.
     """
     try:
         text = read_text(path)

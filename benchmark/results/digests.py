@@ -22,10 +22,7 @@ DIGITS = 16
 def condition_digests(preset: Preset) -> dict[str, str]:
     """Digest of everything a dataset's data and bounds depend on, by condition, in order.
 
-    Parameters
-    ----------
-    preset
-        Its parameters and the modules of all that it is made of count.
+    Its parameters and the modules of all that it is made of count.
     """
     from benchmark.datasets.corrected import reference_condition  # noqa: PLC0415 - loads Numba
 

@@ -59,12 +59,8 @@ def modules_digest(*entries: str) -> str:
 def reached(*entries: str) -> dict[str, str]:
     """Return the digests of modules and of all of ours that they import, by name, sorted.
 
-    Parameters
-    ----------
-    entries
-        ``package.module``. Their top-level packages are ours, too: a plug-in kept elsewhere counts.
-
-    Raises ModuleError where one has no source file, or it cannot be parsed.
+    Their top-level packages are ours, too: a plug-in kept elsewhere counts. ModuleError where one
+    has no source file, or it cannot be parsed.
     """
     ours = {*FIRST_PARTY, *(entry.partition(".")[0] for entry in entries)}
     found: dict[str, str] = {}

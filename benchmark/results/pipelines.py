@@ -40,15 +40,9 @@ def pipelines(
     Errors are own errors over all answers, of the standard unit under each condition, times what
     the geometric mean over units is of the standard unit's under the first.
 
-    Parameters
-    ----------
-    rows
-        Of the store, of all units. Rows of data sets, conditions and models that there are no
-        longer are passed over.
-    latency_us
-        Of a call with one sample on this machine, by data set, extractor and model.
-    bench_deg
-        Fixed error of the standard calibration bench by data set; 0 by default.
+    Rows of data sets, conditions and models that there are no longer are passed over. `latency_us`
+    is of a call with one sample on this machine, by data set, extractor and model; `bench_deg` the
+    fixed error of the standard calibration bench by data set, 0 by default.
     """
     by: dict[Place, dict[tuple[str, int], Row]] = {}
     for row in rows:

@@ -76,11 +76,8 @@ class Record:
     def why_outdated(self, cell: Cell, components: Components) -> tuple[str, ...]:
         """Say why a cell's score is not of these components; empty where it is.
 
-        Returns
-        -------
-        tuple of str
-            ``("new",)`` without a score, ``("failed",)`` for one that failed, else those of
-            `benchmark.results.components.KEYED` that have changed since.
+        ``("new",)`` without a score, ``("failed",)`` for one that failed, else those of
+        `benchmark.results.components.KEYED` that have changed since.
         """
         if cell not in self._score_keys:
             return ("new",)

@@ -85,17 +85,8 @@ class CellErrors:
     def of(cls, error_deg: ArrayLike, found: ArrayLike) -> CellErrors:
         """Round errors and say of each missing one why it is.
 
-        Parameters
-        ----------
-        error_deg
-            (N,) from 0 to 180 degrees; NaN where the pipeline gave no answer.
-        found
-            (N,) of bool: whether the extractor found features.
-
-        Raises
-        ------
-        ValueError
-            On another shape, no samples, or an error outside of 0 to 180 degrees.
+        Errors (N,) are from 0 to 180 degrees, NaN where the pipeline gave no answer; `found` (N,)
+        says whether the extractor found features. ValueError for anything else.
         """
         error = np.asarray(error_deg, dtype=np.float64)
         seen = np.asarray(found, dtype=np.bool_)
@@ -188,19 +179,9 @@ class SampleErrors:
         not at all, and only where its numbers change. Directions come with the standard unit: of a
         data set of which other units alone were measured, they are not there yet.
 
-        Parameters
-        ----------
-        directory
-            Of the record.
-        keep
-            Says of a cell, collected or on disk, whether the record still has it.
-
-        Raises
-        ------
-        StoreError
-            For a file that cannot be read; nothing has been written.
-        ValueError
-            Where a data set's cells have other samples than its directions or each other.
+        `keep` says of a cell, collected or on disk, whether the record still has it. StoreError for
+        a file that cannot be read: nothing has been written. ValueError where a data set's cells
+        have other samples than its directions or each other.
         """
         contents: dict[str, str | bytes | None] = {}
         measured = {cell.dataset for cell in self.cells}
@@ -241,17 +222,9 @@ def has_samples(dataset: str, directory: Path = PUBLISHED) -> bool:
 def read_samples(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     """Return the errors of a data set, sorted by extractor, model, unit and sample.
 
-    Returns
-    -------
-    pandas.DataFrame
-        Of `COLUMNS`; extractor and model are categories.
-
-    Raises
-    ------
-    FileNotFoundError
-        Where the record has none of this data set.
-    StoreError
-        For a file that is damaged, holds other columns or types, or values that no run writes.
+    Of `COLUMNS`; extractor and model are categories. FileNotFoundError where the record has none of
+    this data set; StoreError for a file that is damaged, holds other columns or types, or values
+    that no run writes.
     """
     path = directory / path_of(dataset)
     table = read_parquet(path, COLUMNS, names=_NAMES)
@@ -394,13 +367,8 @@ def read_parquet(
 
     Columns of text in `names` come as categories.
 
-    Raises
-    ------
-    FileNotFoundError
-        Where there is no file.
-    StoreError
-        For a file that is damaged, has other columns or types, nulls, no rows or more than
-        `MOST_ROWS`.
+    FileNotFoundError where there is no file; StoreError for one that is damaged, has other columns
+    or types, nulls, no rows or more than `MOST_ROWS`.
     """
     try:
         data = read_bytes(path)

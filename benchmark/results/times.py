@@ -91,10 +91,8 @@ class Times:
 def read_times(directory: Path) -> Times:
     """Read the times beside a record; none where there is no file.
 
-    Raises
-    ------
-    StoreError
-        For a line that is no time, a pipeline that is there twice, or times without a machine.
+    StoreError for a line that is no time, a pipeline that is there twice, or times without a
+    machine.
     """
     rows: dict[Place, Time] = {}
     for line, row in read_csv(directory / TIMES, COLUMNS):

@@ -70,40 +70,17 @@ def run(
     their version: a dataset in the making changes often. What is published is guarded by
     `benchmark.leaderboard.update`.
 
-    Parameters
-    ----------
-    cells
-        What to measure, as planned by `benchmark.plan.combinations.cells`.
-    store
-        Where results go.
-    workers
-        Number of processes; 1 measures in this one.
-    progress
-        Called as ``progress(done, total, what)`` in cells; by default a bar on standard error
-        when that is a terminal.
-    scheduler
-        Address of a Dask scheduler to measure on instead.
-    parts
-        Datasets and implementations; what is installed by default.
-    keep_stages
-        Whether data, features and predictions are kept beside the store and taken from there.
-        The numbers are the same.
-    others
-        Stores beside which stages are looked for, too.
+    Cells are as planned by `benchmark.plan.combinations.cells`, `parts` what is installed by
+    default. `progress` is called as ``progress(done, total, what)`` in cells; by default a bar on
+    standard error when that is a terminal. `scheduler` is the address of a Dask scheduler to
+    measure on instead of processes of this machine. Data, features and predictions are kept beside
+    the store, and looked for there and beside `others`, unless `keep_stages` is False; the numbers
+    are the same.
 
-    Raises
-    ------
-    UnknownNameError
-        For a cell whose names are not installed.
-    StoreLockedError
-        When another runner writes to the store.
-    DaskMissingError, ClusterError, OtherCodeError
-        When a scheduler is given and ``distributed`` is not installed, the cluster cannot be
-        measured on, or has other code.
-    WorkerLostError
-        When worker processes were killed; what was measured is kept and not measured again.
-    RunInterruptedError
-        On Ctrl-C; what was measured is kept and not measured again.
+    UnknownNameError for a cell whose names are not installed, StoreLockedError when another runner
+    writes to the store; ImportError, ClusterError, OtherCodeError when the cluster cannot be
+    measured on, or has other code. After WorkerLostError, of killed workers, and
+    RunInterruptedError, on Ctrl-C, what was measured is kept and not measured again.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
