@@ -191,23 +191,6 @@ def test_generation_depends_on_neither_the_batch_nor_how_much_is_wanted(
         assert array is there is None or np.array_equal(array, there[:FEW], equal_nan=True), key
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["cmos-single-aperture", "pda-slit", "pd-orbit", "event-l-slit"])
-def test_all_samples_begin_with_the_first_and_do_not_depend_on_the_batch(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    preset = datasets.get(name)
-    condition = preset.conditions[-1]
-    everything = preset.generate(condition, "calibration")
-    assert len(everything.sun) == card_of(name)["splits"]["calibration"]["samples"]
-    for key, array in first(name, condition, "calibration").arrays().items():
-        there = everything.arrays()[key]
-        assert array is there is None or np.array_equal(array, there[:FEW], equal_nan=True), key
-    monkeypatch.setattr("benchmark.datasets.preset.BATCH", 17)
-    again = preset.generate(condition, "calibration")
-    assert samples_hash(again) == samples_hash(everything)
-
-
 def test_the_window_says_little_about_the_spot() -> None:
     preset = datasets.get("cmos-single-aperture")
     sensor = preset.setups["nominal"].sensor

@@ -10,8 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.running.compiling import compile_kernels
-
 PARTS = """
 from algorithms.extractors.profiles.centroid import ProfileCentroid
 from algorithms.models.non_physical.linear import LinearFit
@@ -65,8 +63,3 @@ print(json.dumps([hits, misses]))
     hits, misses = json.loads(run(later, tmp_path))
     assert hits > 3
     assert misses == 0
-
-
-def test_no_workers_compile_nothing() -> None:
-    with pytest.raises(ValueError, match=r"workers.*1.*0"):
-        compile_kernels(0)
