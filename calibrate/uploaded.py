@@ -1,19 +1,24 @@
 """Files that strangers send: calibrated by a process of its own, within time and memory.
 
 The files lie in a temporary directory that is gone at the end. The process reads nothing else of
-what it is sent names of, and what it is sent is never run.
+what it is sent names of, and what it is sent is never run. It ends, and removes the files, when the
+caller no longer waits for it or ends, however that ends.
 """
 
 from __future__ import annotations
 
 import json
 import logging
+import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
+import threading
 import traceback
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -49,6 +54,31 @@ class Upload:
     data: bytes
 
 
+class Caller:
+    """Who waits for a calibration in a process of its own: a pipe that the process reads.
+
+    The system closes it with the process that made it, even where that is killed.
+    """
+
+    def __init__(self) -> None:
+        read, write = os.pipe()
+        self._read, self._write = os.fdopen(read, "rb"), os.fdopen(write, "wb")
+
+    @property
+    def end(self) -> int:
+        """The end that the process reads."""
+        return self._read.fileno()
+
+    def hang_up(self) -> None:
+        """Wait no longer: the process ends, or will as soon as it begins."""
+        self._write.close()
+
+    def close(self) -> None:
+        """Close both ends, when the process has ended."""
+        self._write.close()
+        self._read.close()
+
+
 def calibrate_uploads(
     uploads: Sequence[Upload],
     config: str = "",
@@ -57,6 +87,7 @@ def calibrate_uploads(
     model: str = "",
     require: str = "",
     longest_s: float | None = None,
+    caller: Caller | None = None,
 ) -> dict[str, str]:
     """Calibrate files in a process of its own; returns the text of each product by its name.
 
@@ -74,6 +105,8 @@ def calibrate_uploads(
         A requirement on the error, as `calibrate.report.requirement` reads it; none if empty.
     longest_s : float, optional
         Seconds after which the process is ended; by default `LONGEST_S`.
+    caller : Caller, optional
+        Who may hang up meanwhile; refused then.
 
     Raises
     ------
@@ -81,24 +114,29 @@ def calibrate_uploads(
         If the files are too large or no calibration settles them.
     """
     task = {"config": config, "apply": apply, "model": model, "require": require}
-    found: dict[str, str] = _answered(uploads, task, longest_s)
+    found: dict[str, str] = _answered(uploads, task, longest_s, caller or Caller())
     return found
 
 
-def preview_uploads(uploads: Sequence[Upload], longest_s: float | None = None) -> dict[str, Any]:
+def preview_uploads(
+    uploads: Sequence[Upload], longest_s: float | None = None, caller: Caller | None = None
+) -> dict[str, Any]:
     """Return what the first file seems to hold, as `calibrate.template.preview` says it.
 
     UploadRefusedError if the files are too large, or the first is no table.
     """
-    found: dict[str, Any] = _answered(uploads, {"config": "", "preview": True}, longest_s)
+    task = {"config": "", "preview": True}
+    found: dict[str, Any] = _answered(uploads, task, longest_s, caller or Caller())
     return found
 
 
-def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float | None) -> Any:
+def _answered(
+    uploads: Sequence[Upload], task: dict[str, Any], longest_s: float | None, caller: Caller
+) -> Any:
     """Return what a process of its own answers to a task on files."""
     longest_s = LONGEST_S if longest_s is None else longest_s
-    _require_bounds(uploads, str(task["config"]))
-    with temporary_directory() as directory:
+    with closing(caller), temporary_directory() as directory:
+        _require_bounds(uploads, str(task["config"]))
         names = [_safe(one.name, number) for number, one in enumerate(uploads)]
         for name, one in zip(names, uploads, strict=True):
             (directory / name).parent.mkdir()
@@ -107,7 +145,7 @@ def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float 
         try:
             done = subprocess.run(  # noqa: S603 - this interpreter, and a directory made here
                 [sys.executable, "-m", "calibrate.uploaded", str(directory)],
-                check=False, timeout=longest_s, stdin=subprocess.DEVNULL,
+                check=False, timeout=longest_s, stdin=caller.end,
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             )  # fmt: skip
         except subprocess.TimeoutExpired:
@@ -199,5 +237,17 @@ def main(arguments: Sequence[str]) -> int:
     return 0
 
 
+def _end_with_caller(directory: Path) -> None:
+    """End this process, and remove its files, once nobody waits for it: its input ends then."""
+
+    def wait() -> None:
+        os.read(0, 1)
+        shutil.rmtree(directory, ignore_errors=True)
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True, name="end with the caller").start()
+
+
 if __name__ == "__main__":
+    _end_with_caller(Path(sys.argv[1]))
     sys.exit(main(sys.argv[1:]))

@@ -10,7 +10,7 @@ from fastapi.responses import JSONResponse
 from api.schema.calibrations import CalibrationFields
 from api.service import calibrations as service
 from api.web.answers import StrictRoute
-from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, as_response, sent
+from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, as_response, sent, while_there
 from api.web.dependencies import NO_PARAMETERS
 from api.web.negotiation import JSON, media_type
 
@@ -79,7 +79,7 @@ _RESPONSES: dict[int | str, dict[str, Any]] = {
     413: {"description": "The body is too long.", "content": _PROBLEM},
     415: {"description": "The body is no form.", "content": _PROBLEM},
     422: {"description": "The files settle no calibration; it is said why.", "content": _PROBLEM},
-    503: {"description": "Another calibration runs; try again later.", "content": _PROBLEM},
+    503: {"description": "Too many calibrations wait; try again later.", "content": _PROBLEM},
 }
 
 
@@ -93,12 +93,14 @@ _RESPONSES: dict[int | str, dict[str, Any]] = {
 async def calibrations(request: Request) -> Response:
     """Compare models on the files' own readings, judge the best, and write flight code.
 
-    Same as `sunatlas calibrate`, with a limit of 60 s. Uploaded files are deleted after the answer.
+    Same as `sunatlas calibrate`, with a limit of 60 s. Uploaded files are deleted after the answer,
+    or when the client hangs up.
     """
     wanted = media_type(request.headers.get("accept"), OFFERED)
     given, files = await sent(request)
     fields = service.read(given, files)
-    return as_response(await service.calibrated(fields, files), ANSWERS.get(fields.answer, wanted))
+    made = await while_there(request, service.calibrated(fields, files))
+    return as_response(made, ANSWERS.get(fields.answer, wanted))
 
 
 @router.post(
@@ -118,4 +120,5 @@ async def preview(request: Request) -> Response:
     """Guess the columns of a file from names and first rows. The file is deleted afterwards."""
     given, files = await sent(request)
     service.read(given, files)
-    return JSONResponse(await service.previewed(files), headers={"Cache-Control": "no-store"})
+    found = await while_there(request, service.previewed(files))
+    return JSONResponse(found, headers={"Cache-Control": "no-store"})

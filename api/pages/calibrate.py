@@ -14,7 +14,7 @@ from api.pages.rendering import render
 from api.service import calibrations as service
 from api.service.problems import Problem
 from api.web.answers import StrictRoute
-from api.web.calibrations import ANSWERS, HTML, as_response, sent
+from api.web.calibrations import ANSWERS, HTML, as_response, sent, while_there
 from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
 from calibrate.sample import NAME, sample
 from calibrate.settings import Form, Kind
@@ -70,7 +70,7 @@ async def report(request: Request) -> Response:
         if _SAMPLE in fields:  # what was set up for another file does not fit this one
             asked, files = {**asked, "config": ""}, (Upload(NAME, sample()),)
         read = service.read(asked, files)
-        made = await service.calibrated(read, files)
+        made = await while_there(request, service.calibrated(read, files))
         wanted = ANSWERS.get(read.answer, HTML)
         if wanted != HTML:
             return as_response(made, wanted)

@@ -18,6 +18,7 @@ from api.http import about, calibrations, files, metadata, tables
 from api.http.openapi import describe
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
+from api.server.connections import FewAtOnce
 from api.service.knowledge import Knowledge
 from api.web.middleware import EveryResponse
 from api.web.negotiation import PARQUET
@@ -72,6 +73,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     app.add_middleware(
         GZipMiddleware, minimum_size=512, compresslevel=6, exclude_content_types=packed
     )
+    app.add_middleware(FewAtOnce)
     app.add_middleware(EveryResponse)
 
     def openapi() -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 from collections.abc import Sequence
 from http import HTTPStatus
 
@@ -16,6 +17,10 @@ from api.pages.serving import TWINS, refusal_page
 from api.service.problems import MEDIA_TYPE, Problem, Violation
 from api.service.refusals import refusal
 from survey_data.nearest import nearest_name
+
+
+#: Of a request whose client hung up, in counts and in the access log; as nginx has it.
+CLIENT_LEFT = 499
 
 
 def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
@@ -39,8 +44,11 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
 
     @app.exception_handler(ClientDisconnect)
     async def gone(request: Request, _error: ClientDisconnect) -> Response:
-        wrong = Violation("body", None, "all that its length promised")
-        return respond(request, Problem(400, "incomplete-body", errors=[wrong]))
+        # Nobody reads the answer, and Uvicorn logs only what is sent: the line is written here.
+        of, path = "{}:{}".format(*(request.client or ("", 0))), request.scope["path"]
+        said = (of, request.method, path, request.scope["http_version"], CLIENT_LEFT)
+        logging.getLogger("uvicorn.access").info('%s - "%s %s HTTP/%s" %d', *said)
+        return respond(request, Problem(CLIENT_LEFT, "client-closed-request"))
 
     @app.exception_handler(Exception)
     async def failed(request: Request, _error: Exception) -> Response:

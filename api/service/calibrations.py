@@ -1,4 +1,4 @@
-"""Files of a turntable to the products of their calibration, one calibration at a time."""
+"""Files of a turntable to the products of their calibration, in a short queue."""
 
 from __future__ import annotations
 
@@ -6,17 +6,63 @@ import asyncio
 import io
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 from api.schema.calibrations import CalibrationFields
 from api.service.asking import reading, refusing
 from api.service.problems import Problem, Violation
-from calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads, preview_uploads
+from calibrate.uploaded import (
+    Caller,
+    Upload,
+    UploadRefusedError,
+    calibrate_uploads,
+    preview_uploads,
+)
 
-#: One calibration, and one preview, at a time in a process of the server: each keeps a core busy.
-_BUSY, _PREVIEWING = asyncio.Semaphore(1), asyncio.Semaphore(1)
-_RETRY_S = "30"
+#: Calibrations that wait at most in a process of the server, and seconds that each usually takes.
+MOST_WAITING, _USUAL_S = 8, 10
 _Answer = TypeVar("_Answer")
+
+
+class _Queue:
+    """Work in processes of their own, one at a time, as each keeps a core busy; others wait."""
+
+    def __init__(self) -> None:
+        self._thread = ThreadPoolExecutor(1, "calibration")
+        self.length = 0
+
+    def require_place(self) -> None:
+        if self.length > MOST_WAITING:
+            wait_s = _USUAL_S * self.length
+            detail = f"{self.length} calibrations run or wait here; try again in {wait_s} s."
+            raise Problem(503, "busy", detail, headers={"Retry-After": str(wait_s)})
+
+    async def answer(self, work: Callable[[Caller], _Answer]) -> _Answer:
+        """Return what `work` gives in its turn; a `Problem` (422, 503) where it refuses.
+
+        Where this is cancelled, the process of the work ends.
+        """
+        self.require_place()
+        caller = Caller()
+        turn = self._thread.submit(work, caller)
+        turn.add_done_callback(lambda _: caller.close())
+        self.length += 1
+        try:
+            return await asyncio.wrap_future(turn)
+        except UploadRefusedError as error:
+            raise Problem(422, "no-calibration", str(error)) from error
+        finally:
+            caller.hang_up()
+            self.length -= 1
+
+
+_CALIBRATIONS, _PREVIEWS = _Queue(), _Queue()
+
+
+def require_place() -> None:
+    """Raise a `Problem` (503) where so many calibrations wait that no other is taken."""
+    _CALIBRATIONS.require_place()
 
 
 def read(fields: Mapping[str, str], files: Sequence[Upload]) -> CalibrationFields:
@@ -38,34 +84,23 @@ async def calibrated(fields: CalibrationFields, files: Sequence[Upload]) -> Mapp
     Raises
     ------
     Problem
-        422 where the files settle no calibration, 503 where another calibration runs.
+        422 where the files settle no calibration, 503 where too many others wait.
     """
-    return await _alone(
-        _BUSY,
-        lambda: calibrate_uploads(
+    return await _CALIBRATIONS.answer(
+        lambda caller: calibrate_uploads(
             files,
             fields.config,
             apply=fields.apply == "true",
             model=fields.model.strip(),
             require=fields.require.strip(),
-        ),
+            caller=caller,
+        )
     )
 
 
 async def previewed(files: Sequence[Upload]) -> dict[str, Any]:
     """Return what the first file seems to hold; a `Problem` as of `calibrated`."""
-    return await _alone(_PREVIEWING, lambda: preview_uploads(files))
-
-
-async def _alone(busy: asyncio.Semaphore, work: Callable[[], _Answer]) -> _Answer:
-    if busy.locked():
-        detail = "Another calibration runs; try again in half a minute."
-        raise Problem(503, "busy", detail, headers={"Retry-After": _RETRY_S})
-    async with busy:
-        try:
-            return await asyncio.to_thread(work)
-        except UploadRefusedError as error:
-            raise Problem(422, "no-calibration", str(error)) from error
+    return await _PREVIEWS.answer(lambda caller: preview_uploads(files, caller=caller))
 
 
 def archive_of(made: Mapping[str, str]) -> bytes:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import asyncio
+from collections.abc import Coroutine, Mapping
+from typing import Any, TypeVar
 
 from fastapi import Request, Response
 from starlette.datastructures import UploadFile
+from starlette.requests import ClientDisconnect
 
-from api.service.calibrations import archive_of
+from api.service.calibrations import archive_of, require_place
 from api.web.negotiation import JSON
 from calibrate.uploaded import Upload
 
@@ -15,6 +18,7 @@ HTML, ZIP = "text/html", "application/zip"
 OFFERED = (JSON, HTML, ZIP)
 #: What the field `answer` calls them.
 ANSWERS: Mapping[str | None, str] = {"json": JSON, "report": HTML, "zip": ZIP}
+_Answer = TypeVar("_Answer")
 
 
 async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
@@ -23,16 +27,38 @@ async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
     Raises
     ------
     Problem
-        As `api.web.requests.StrictRequest.form`.
+        As `api.web.requests.StrictRequest.form`; 503 where too many calibrations wait already.
     """
     form = await request.form()
     try:
+        require_place()  # files are on disk up to here, and in memory from here on
         fields = {name: part for name, part in form.multi_items() if isinstance(part, str)}
         parts = [part for _, part in form.multi_items() if isinstance(part, UploadFile)]
         files = [Upload(part.filename or "", await part.read()) for part in parts]
     finally:
         await form.close()
     return fields, tuple(file for file in files if file.name or file.data)
+
+
+async def while_there(request: Request, work: Coroutine[Any, Any, _Answer]) -> _Answer:
+    """Return what `work` gives, which is cancelled when the client leaves; ClientDisconnect then.
+
+    The body has to be read before.
+    """
+
+    async def leaves() -> None:
+        while (await request.receive())["type"] != "http.disconnect":
+            pass
+
+    answered, left = asyncio.ensure_future(work), asyncio.ensure_future(leaves())
+    try:
+        await asyncio.wait((answered, left), return_when=asyncio.FIRST_COMPLETED)
+        if not answered.done():
+            raise ClientDisconnect
+        return await answered
+    finally:
+        answered.cancel()
+        left.cancel()
 
 
 def as_response(made: Mapping[str, str], wanted: str) -> Response:

@@ -30,7 +30,7 @@ LARGEST_FORM = LARGEST + LARGEST_FIELD
 MOST_PARTS = 40
 #: A body that brings fewer bytes a second, after so many seconds, is given up.
 SLOWEST_PER_S, PATIENCE_S = 20_000, 10.0
-_LONGEST_TYPE = 500  # characters of a Content-Type that are read: parsing it takes their square
+_LONGEST_TYPE = 500  # characters of a Content-Type: parsing it takes their square
 logging.getLogger("python_multipart").setLevel(logging.ERROR)  # what it refuses, we answer
 
 
@@ -137,7 +137,10 @@ class StrictRequest(Request):
     def _require(self, media: str, expected: str) -> bytes:
         """Refuse a body by its headers, before it is read; return the boundary of a form."""
         stated = self.headers.get("content-type")
-        kind, options = parse_options_header((stated or "")[:_LONGEST_TYPE])
+        if len(stated or "") > _LONGEST_TYPE:
+            expected = f"{expected}, in at most {_LONGEST_TYPE} characters"
+            raise _unsupported("Content-Type", stated, expected, {"Accept": media})
+        kind, options = parse_options_header(stated)
         plain = options.get(b"charset", b"utf-8").lower() == b"utf-8"
         if kind != media.encode() or not plain or (media == FORM and b"boundary" not in options):
             raise _unsupported("Content-Type", stated, expected, {"Accept": media})

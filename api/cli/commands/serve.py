@@ -22,9 +22,10 @@ from benchmark.processes import take_time_to_end
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-#: Of Uvicorn. Clients that are slow, or too many, are for a proxy to hold off (deploy/Caddyfile).
+#: Of Uvicorn, with bounds for each client; a proxy knows them better (deploy/Caddyfile).
 _OPTIONS: dict[str, Any] = {
     "ws": "none",
+    "http": "api.server.connections:BoundedProtocol",
     "limit_concurrency": 400,
     "timeout_graceful_shutdown": 1,
 }

@@ -55,13 +55,14 @@ def test_a_status_of_the_framework_is_a_problem_named_after_it(
     assert document["detail"] == "held by another"
 
 
-def test_a_second_calibration_at_once_is_told_when_to_come_back(
+def test_a_calibration_is_told_when_to_come_back_where_too_many_wait(
     client_of: Callable[[FastAPI], Client], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(calibrations, "_BUSY", asyncio.Semaphore(0))
+    monkeypatch.setattr(calibrations._CALIBRATIONS, "length", 9)
     files = {"file": ("b.csv", b"x_px,y_px,alpha,beta\n")}
     answer = client_of(create_app(Knowledge())).post("/v1/calibrations", files=files)
-    assert (answer.status_code, answer.headers["retry-after"]) == (503, "30")
+    assert (answer.status_code, answer.headers["retry-after"]) == (503, "90")
+    assert answer.json()["detail"] == "9 calibrations run or wait here; try again in 90 s."
     assert answer.json()["type"].endswith(":busy")
 
 

@@ -1,0 +1,69 @@
+"""Who hangs up gives the place in the queue of calibrations away; others wait for theirs."""
+
+import os
+import socket
+import threading
+import time
+
+import pytest
+
+from api.service import calibrations
+from calibrate.uploaded import UploadRefusedError
+
+BODY = (
+    b'--a\r\nContent-Disposition: form-data; name="file"; filename="b.csv"\r\n\r\n1\r\n--a--\r\n'
+)
+HEAD = (
+    b"POST /v1/calibrations HTTP/1.1\r\nHost: a\r\nContent-Length: %d\r\n"
+    b"Content-Type: multipart/form-data; boundary=a\r\n\r\n" % len(BODY)
+)
+
+
+@pytest.fixture
+def work(monkeypatch):
+    """Calibrations that begin, and end when their caller hangs up."""
+    begun = threading.Semaphore(0)
+
+    def calibrate(*_, caller, **__):
+        begun.release()
+        assert os.read(caller.end, 1) == b""
+        caller.close()
+        raise UploadRefusedError("nobody waits")
+
+    monkeypatch.setattr(calibrations, "calibrate_uploads", calibrate)
+    return begun
+
+
+def waiting(count):
+    """Wait until so many calibrations run or wait."""
+    deadline = time.monotonic() + 60
+    while calibrations._CALIBRATIONS.length != count:
+        assert time.monotonic() < deadline, calibrations._CALIBRATIONS.length
+        time.sleep(0.01)
+
+
+def left(connection):
+    connection.request("GET", "/metrics")
+    text = connection.getresponse().read().decode()
+    lines = [line for line in text.splitlines() if '_total{' in line and 'status="499"' in line]
+    return sum(float(line.rpartition(" ")[2]) for line in lines)
+
+
+def test_who_hangs_up_gives_the_turn_to_the_next(atlas, serve, work):
+    with serve(atlas.app) as connection:
+        before = left(connection)
+        plugs = []
+        for _ in range(3):
+            plugs.append(socket.create_connection((connection.host, connection.port)))
+            plugs[-1].sendall(HEAD + BODY)
+            waiting(len(plugs))
+        assert work.acquire(timeout=60)
+        assert not work.acquire(blocking=False), "one at a time"
+        plugs[1].close()  # before its turn
+        waiting(2)
+        plugs[0].close()
+        assert work.acquire(timeout=60), "the third"
+        plugs[2].close()
+        waiting(0)
+        assert not work.acquire(blocking=False)
+        assert left(connection) == before + 3

@@ -1,0 +1,85 @@
+"""One client cannot take all of a server: connections, time to ask, bodies in tiny chunks."""
+
+import asyncio
+import socket
+import time
+from contextlib import suppress
+
+import pytest
+
+from api.server import connections
+from api.server.connections import BoundedProtocol, FewAtOnce
+
+
+@pytest.fixture
+def place(atlas, serve):
+    with serve(atlas.app, http=BoundedProtocol) as opened:
+        yield opened.host, opened.port
+
+
+def opened_from(place, source):
+    return socket.create_connection(place, timeout=60, source_address=(source, 0))
+
+
+def answer(plug, asked=b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n"):
+    plug.sendall(asked)
+    return plug.recv(65536)
+
+
+def test_an_address_keeps_few_connections_and_others_are_answered(place, monkeypatch):
+    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
+    kept = [opened_from(place, "127.0.0.2") for _ in range(3)]
+    assert all(answer(plug).startswith(b"HTTP/1.1 200 ") for plug in kept)
+    with opened_from(place, "127.0.0.2") as fourth:
+        assert fourth.recv(65536).startswith(b"HTTP/1.1 429 ")
+    for source in ["127.0.0.3", *["127.0.0.1"] * 5]:  # a proxy, which Uvicorn trusts, keeps more
+        kept.append(opened_from(place, source))
+        assert answer(kept[-1]).startswith(b"HTTP/1.1 200 ")
+    for plug in kept:
+        plug.close()
+
+
+def test_a_connection_on_which_nothing_is_asked_is_closed(place, monkeypatch):
+    monkeypatch.setattr(connections, "PATIENCE_S", 0.1)
+    with opened_from(place, "127.0.0.1") as idle, opened_from(place, "127.0.0.1") as half:
+        half.sendall(b"GET / HTTP/1.1\r\nHos")
+        for plug in (idle, half):
+            with suppress(ConnectionResetError):
+                assert plug.recv(1) == b""
+
+
+def test_a_body_in_chunks_is_refused_before_any_is_read(place):
+    head = b"POST /v1/calibrations HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n"
+    with opened_from(place, "127.0.0.1") as plug:
+        said = answer(plug, head + b"1\r\nx\r\n" * 30_000)
+    assert said.startswith(b"HTTP/1.1 400 ")
+    with opened_from(place, "127.0.0.1") as plug:
+        plug.sendall(head)
+        time.sleep(0.1)
+        said = plug.recv(65536) + plug.recv(65536)
+    assert b"Expected a body with Content-Length; got Transfer-Encoding." in said
+
+
+def test_so_many_requests_of_a_client_are_answered_at_once(monkeypatch):
+    monkeypatch.setattr(connections, "MOST_REQUESTS", 2)
+
+    async def ask():
+        may_end, statuses = asyncio.Event(), []
+
+        async def app(_scope, _receive, send):
+            await may_end.wait()
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+
+        async def send(message):
+            statuses.extend([message["status"]] if "status" in message else [])
+
+        bounded = FewAtOnce(app)
+        scopes = [{"type": "http", "client": (host, 1)} for host in "aaab"]
+        asked = [asyncio.create_task(bounded(scope, None, send)) for scope in scopes]
+        await asyncio.sleep(0)
+        may_end.set()
+        await asyncio.gather(*asked)
+        await bounded(scopes[0], None, send)
+        return statuses
+
+    assert asyncio.run(ask()) == [429, 200, 200, 200, 200]

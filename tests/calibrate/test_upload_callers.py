@@ -1,0 +1,38 @@
+"""The process of a calibration ends with who waits for it, and leaves none of a stranger's files."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from calibrate.uploaded import Caller, Upload, UploadRefusedError, calibrate_uploads
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_process_of_a_caller_that_is_gone_ends_and_removes_the_files(tmp_path: Path) -> None:
+    """Its input ends with the process that holds the other end, even where that is killed."""
+    directory = tmp_path / "uploaded"
+    (directory / "0").mkdir(parents=True)
+    (directory / "0" / "bench.csv").write_bytes(b"a stranger's")
+    command = [sys.executable, "-m", "calibrate.uploaded", str(directory)]
+    with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        process.stdin.close()
+        assert process.wait(timeout=600) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_who_hung_up_is_refused_and_nothing_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    caller = Caller()
+    caller.hang_up()
+    with pytest.raises(UploadRefusedError):
+        calibrate_uploads([Upload("bench.csv", b"x_px,y_px,alpha,beta\n")], caller=caller)
+    assert list(tmp_path.iterdir()) == []
