@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import io
+import math
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from calibrate.forms.cells import numbers_of
-from calibrate.forms.text import Cells, TableError, cells_of_text, cells_of_workbook
+from calibrate.forms.text import (
+    Cells,
+    TableError,
+    cells_of_text,
+    cells_of_workbook,
+    extent_of_workbook,
+)
 from calibrate.forms.units import named, unit_of
 from calibrate.settings import FileSettings
 from files.reading import read_bytes
@@ -116,8 +124,7 @@ def _read(data: bytes, source: str, kind: str, stated: FileSettings) -> Table:
     if kind in (".npz", ".npy"):
         return _read_numpy(data, source)
     if kind == ".xlsx":
-        _require_unpacked(data, source)
-        return _of_cells(cells_of_workbook(data, source, stated, MOST_ROWS), source)
+        return _read_excel(data, source, stated)
     return _of_cells(cells_of_text(data, source, stated, MOST_ROWS), source)
 
 
@@ -231,16 +238,29 @@ def _read_parquet(data: bytes, source: str) -> Table:
     return _of_frame(frame, source)
 
 
+def _read_excel(data: bytes, source: str, stated: FileSettings) -> Table:
+    _require_unpacked(data, source)
+    try:
+        rows, columns = extent_of_workbook(data)
+    except Exception as error:  # noqa: BLE001 - zipfile raises many kinds for damaged files
+        raise TableError(f"{source}: expected an Excel workbook ({str(error)[:80]})") from None
+    _require_cells(rows, columns, source)
+    return _of_cells(cells_of_workbook(data, source, stated, MOST_ROWS), source)
+
+
 def _read_numpy(data: bytes, source: str) -> Table:
     if zipfile.is_zipfile(io.BytesIO(data)):
         _require_unpacked(data, source)
     try:
+        _require_arrays(data, source)
         loaded = np.load(io.BytesIO(data), allow_pickle=False)
         arrays = (
             {name: loaded[name] for name in loaded.files}
             if isinstance(loaded, np.lib.npyio.NpzFile)
             else {name: loaded[name] for name in loaded.dtype.names or ()}
         )
+    except TableError:
+        raise
     except Exception as error:  # noqa: BLE001 - NumPy raises many kinds for damaged files
         said = str(error)[:80]
         raise TableError(f"{source}: expected NumPy arrays without pickles ({said})") from None
@@ -260,6 +280,30 @@ def _read_numpy(data: bytes, source: str) -> Table:
     if len(lengths) != 1:
         raise TableError(f"{source}: expected arrays of one length by name; got {sorted(lengths)}")
     return _of_frame(pd.DataFrame(columns), source)
+
+
+def _require_arrays(data: bytes, source: str) -> None:
+    """Refuse arrays by their heads, before room is made for what they say that they hold."""
+    if not zipfile.is_zipfile(io.BytesIO(data)):
+        _require_array(io.BytesIO(data), source)
+        return
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        for name in archive.namelist():
+            with archive.open(name) as file:
+                _require_array(file, f"{source}, array {name.removesuffix('.npy')}")
+
+
+def _require_array(file: IO[bytes], source: str) -> None:
+    version = np.lib.format.read_magic(file)
+    read = np.lib.format.read_array_header_1_0
+    if version != (1, 0):
+        read = np.lib.format.read_array_header_2_0
+    shape, _, dtype = read(file)
+    rows, *others = shape or (1,)
+    _require_cells(rows, math.prod(others) * len(dtype.names or (0,)), source)
+    size = math.prod(shape) * dtype.itemsize
+    if size > _MOST_UNPACKED:
+        raise TableError(f"{source}: expected at most {_MOST_UNPACKED} bytes; got {size}")
 
 
 def _require_unpacked(data: bytes, source: str) -> None:

@@ -47,7 +47,7 @@ class BoundedProtocol(H11Protocol):
 
     def __init__(self, *args: Any, **named: Any) -> None:
         super().__init__(*args, **named)
-        self.conn = _Connection(h11.SERVER)
+        self.conn = self._bounded = _Connection(h11.SERVER)
         self._seen: tuple[Any, int] = (None, 0)
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
@@ -55,7 +55,8 @@ class BoundedProtocol(H11Protocol):
         super().connection_made(transport)
         host = self.client[0] if self.client else ""
         proxies = getattr(self.app, "trusted_hosts", ())  # of the middleware that trusts them
-        count = sum(1 for one in self.connections if one.client and one.client[0] == host)
+        clients = [getattr(one, "client", None) or ("", 0) for one in self.connections]
+        count = sum(client[0] == host for client in clients)
         if count > MOST_CONNECTIONS and host not in proxies:
             head = f"HTTP/1.1 429 Too Many Requests\r\nContent-Length: {len(_TOO_MANY)}\r\n"
             transport.write(f"{head}Connection: close\r\n\r\n{_TOO_MANY}".encode())
@@ -65,10 +66,10 @@ class BoundedProtocol(H11Protocol):
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what is no request, or one whose length is not stated."""
-        super().send_400_response(_NO_LENGTH if self.conn.unmeasured else msg)
+        super().send_400_response(_NO_LENGTH if self._bounded.unmeasured else msg)
 
     def _look(self) -> None:
-        """Close a connection on which nothing was asked, or nothing of an answer taken, for long."""
+        """Close a connection on which nothing is asked, or nothing of an answer taken."""
         if self.transport.is_closing():
             return
         before, self._seen = self._seen, (self.cycle, self.transport.get_write_buffer_size())
@@ -90,7 +91,8 @@ class FewAtOnce:
         """Pass a request on, or refuse it."""
         client = (scope.get("client") or ("",))[0]
         if scope["type"] == "http" and self._counts[client] >= MOST_REQUESTS:
-            refusal = PlainTextResponse(_TOO_MANY, HTTPStatus.TOO_MANY_REQUESTS, {"Retry-After": "5"})
+            again = {"Retry-After": "5"}
+            refusal = PlainTextResponse(_TOO_MANY, HTTPStatus.TOO_MANY_REQUESTS, again)
             await refusal(scope, receive, send)
             return
         self._counts[client] += 1

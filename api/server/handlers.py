@@ -18,7 +18,6 @@ from api.service.problems import MEDIA_TYPE, Problem, Violation
 from api.service.refusals import refusal
 from survey_data.nearest import nearest_name
 
-
 #: Of a request whose client hung up, in counts and in the access log; as nginx has it.
 CLIENT_LEFT = 499
 

@@ -7,6 +7,7 @@ import csv
 import datetime as dt
 import io
 import re
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,6 +25,12 @@ from calibrate.forms.layout import (
     without_mark,
 )
 from calibrate.settings import FileSettings
+
+#: A filled cell of a sheet by its place, and bytes that a sheet is looked through at a time.
+_FILLED = re.compile(
+    rb'<(?:\w+:)?c\s(?:[^<>]*?\s)?r="([A-Z]{1,3})([0-9]{1,7})"[^<>]*(?<!/)>(?=[^<]|<[^/])'
+)
+_STEP, _LONGEST_TAG = 2**20, 2**16
 
 
 class TableError(ValueError):
@@ -214,6 +221,27 @@ def _notes(encoding: str, separator: str, decimal: str, layout: Layout, comments
     if comments:
         said.append(f"{comments} comment line{'s' if comments > 1 else ''} left out")
     return said
+
+
+def extent_of_workbook(data: bytes) -> tuple[int, int]:
+    """Return the last row and the last column of any sheet that a filled cell stands in.
+
+    By the cells' own places, before any is read: a reader makes every cell up to the last one.
+    """
+    rows, columns = 0, b""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        for name in archive.namelist():
+            with archive.open(name) as part:
+                text = b""
+                while more := part.read(_STEP):
+                    text = text[-_LONGEST_TAG:] + more
+                    for column, row in _FILLED.findall(text):
+                        rows = max(rows, int(row))
+                        columns = max(columns, column.rjust(3))
+    width = 0
+    for letter in columns.strip():
+        width = 26 * width + letter - ord("A") + 1
+    return rows, width
 
 
 def cells_of_workbook(data: bytes, source: str, stated: FileSettings, most_rows: int) -> Cells:

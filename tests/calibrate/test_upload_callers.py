@@ -1,4 +1,4 @@
-"""The process of a calibration ends with who waits for it, and leaves none of a stranger's files."""
+"""The process of a calibration ends with who waits for it, and leaves no file of a stranger."""
 
 from __future__ import annotations
 

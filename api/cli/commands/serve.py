@@ -32,6 +32,8 @@ _OPTIONS: dict[str, Any] = {
 #: Uvicorn's own, which says nothing of starts and stops.
 _LOG: dict[str, Any] = copy.deepcopy(LOGGING_CONFIG)
 _LOG["loggers"]["uvicorn"]["level"] = "WARNING"
+#: Descriptor of the socket that systemd hands over.
+_FIRST_HANDED = 3
 #: How long workers may take to end, one after another, on a busy machine, s: usually 1.5.
 _WORKERS_END_S = 15.0
 
@@ -54,14 +56,16 @@ def serve(
 
     Pages are at /, the guide at /guide, the API at /v1, its reference at /docs, its OpenAPI
     description at /openapi.json, Prometheus metrics at /metrics. The guide must be built first
-    (`sunatlas guide build`). Stop with Ctrl-C.
+    (`sunatlas guide build`). Stop with Ctrl-C. With several workers, SIGHUP replaces them one after
+    another. A socket that systemd hands over is served instead of --host and --port.
     """
     os.environ[serving.WORKING] = str(user_cache())
-    listener = listen(host, port)
+    listener = inherited() or listen(host, port)
     with listener, contextlib.ExitStack() as stack:
         # Loaded before anything is served: damaged facts are refused in one sentence.
         application = serving.application(loaded=True)
-        typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
+        host, port = listener.getsockname()[:2]
+        typer.echo(f"Sun Sensor Atlas: {address(host, port)} (Ctrl-C stops)")
         sys.stdout.flush()  # who reads a pipe waits for the address
         # Python walks all that was loaded before it ends, for a second or two, unless it is frozen.
         stack.callback(gc.freeze)
@@ -88,6 +92,16 @@ def _serve_by_many(listener: socket.socket, workers: int, *, access_log: bool) -
         **_OPTIONS,
     )
     Multiprocess(config, [listener]).run()
+
+
+def inherited() -> socket.socket | None:
+    """Return the listening socket that systemd hands over (sd_listen_fds), if it does."""
+    if os.environ.get("LISTEN_PID") != str(os.getpid()) or os.environ.get("LISTEN_FDS") != "1":
+        return None
+    for name in ("LISTEN_PID", "LISTEN_FDS", "LISTEN_FDNAMES"):  # not for workers
+        os.environ.pop(name, None)
+    os.set_inheritable(_FIRST_HANDED, False)
+    return socket.socket(fileno=_FIRST_HANDED)
 
 
 def listen(host: str, port: int) -> socket.socket:

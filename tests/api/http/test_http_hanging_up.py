@@ -10,9 +10,7 @@ import pytest
 from api.service import calibrations
 from calibrate.uploaded import UploadRefusedError
 
-BODY = (
-    b'--a\r\nContent-Disposition: form-data; name="file"; filename="b.csv"\r\n\r\n1\r\n--a--\r\n'
-)
+BODY = b'--a\r\nContent-Disposition: form-data; name="file"; filename="b.csv"\r\n\r\n1\r\n--a--\r\n'
 HEAD = (
     b"POST /v1/calibrations HTTP/1.1\r\nHost: a\r\nContent-Length: %d\r\n"
     b"Content-Type: multipart/form-data; boundary=a\r\n\r\n" % len(BODY)
@@ -45,7 +43,7 @@ def waiting(count):
 def left(connection):
     connection.request("GET", "/metrics")
     text = connection.getresponse().read().decode()
-    lines = [line for line in text.splitlines() if '_total{' in line and 'status="499"' in line]
+    lines = [line for line in text.splitlines() if "_total{" in line and 'status="499"' in line]
     return sum(float(line.rpartition(" ")[2]) for line in lines)
 
 
