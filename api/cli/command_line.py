@@ -231,7 +231,10 @@ def _stop(error: BaseException, code: int, message: str) -> None:
         sys.exit(exit_code())
     if os.environ.get(DEBUG):
         raise error
-    typer.echo(f"sunatlas: {' '.join(message.split())}", err=True)
+    line = " ".join(message.split())
+    # what a file or a server says may hold what a terminal obeys, or what turns its line
+    shown = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in line)
+    typer.echo(f"sunatlas: {shown}", err=True)
     sys.exit(code)
 
 

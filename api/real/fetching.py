@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 import http.client
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
+from threading import Thread
 from urllib.error import URLError
 from urllib.request import Request, urlopen
 
@@ -75,6 +77,23 @@ def _text(data: bytes, source: Source) -> str:
 
 
 def _download(address: str) -> bytes:
+    """Return what stands at an address; in a thread, as each byte of a server may be waited for."""
+    answered = Future[bytes]()
+
+    def read() -> None:
+        try:
+            answered.set_result(_read(address))
+        except BaseException as error:  # noqa: BLE001 - raised where it is waited for
+            answered.set_exception(error)
+
+    Thread(target=read, daemon=True).start()
+    try:
+        return answered.result(_LONGEST_S)
+    except TimeoutError:
+        raise FetchError(f"{address}: expected a whole answer within {_LONGEST_S:g} s") from None
+
+
+def _read(address: str) -> bytes:
     if not address.startswith("https://"):
         raise FetchError(f"{address}: expected an address of https")
     try:
