@@ -263,8 +263,10 @@ def of_document(stored: dict[str, Any], source: str) -> SavedCalibration:
         raise UnreadableCalibrationError("compensations must be a list")
     if "rms_left_out_deg" not in fit:
         raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
-    if (stated := fit["rms_left_out_deg"]) is not None:
-        numbers(stated, (), "fit.rms_left_out_deg")
+    for name in ("rms_left_out_deg", "rms_fitted_deg", "noise_deg", "fit_spread_deg"):
+        stated = fit.get(name)
+        if stated is not None and numbers(stated, (), f"fit.{name}") < 0:
+            raise UnreadableCalibrationError(f"fit.{name} must be 0 or more; got {stated:g}")
     model = cast("Model", stage_of(stored["model"], _models()))
     _require_vector(model)
     return SavedCalibration(
@@ -356,12 +358,19 @@ def intervals_of(stored: Mapping[str, Any] | None) -> Intervals | None:
     if stored is None:
         return None
     axis, rings_deg, sigma_deg = (
-        np.asarray(stored[name], dtype=np.float64) for name in ("axis", "rings_deg", "sigma_deg")
+        numbers(stored[name], np.shape(stored[name]), f"fit.intervals.{name}")
+        for name in ("axis", "rings_deg", "sigma_deg")
+    )
+    factor, coverage, samples, sectors = (
+        numbers(stored[name], (), f"fit.intervals.{name}", above=0.0).item()
+        for name in ("factor", "coverage", "samples", "sectors")
     )
     found = Intervals(
-        float(stored["factor"]), float(stored["coverage"]), int(stored["samples"]), axis, rings_deg,
-        int(stored["sectors"]), sigma_deg, _grazing_of(stored.get("grazing")),
+        factor, coverage, int(samples), axis, rings_deg, int(sectors), sigma_deg,
+        _grazing_of(stored.get("grazing")),
     )  # fmt: skip
+    if coverage > 1 or not (sigma_deg >= 0).all():
+        raise ValueError("expected intervals of a coverage of at most 1 and of no negative sigma")
     shape = (len(found.rings_deg), found.sectors, 2)
     if found.axis.shape != (3,) or found.sigma_deg.shape != shape:
         raise ValueError(
@@ -375,8 +384,11 @@ def _grazing_of(stored: Mapping[str, Any] | None) -> Grazing:
     """Return the growth of errors at grazing light that a document holds; none in older ones."""
     if stored is None or not stored["normals"]:
         return Grazing.none()
-    normals = np.asarray(stored["normals"], dtype=np.float64)
-    found = Grazing(normals, float(stored["sine"]), float(stored["grown"]))
+    normals, sine, grown = (
+        numbers(stored[name], np.shape(stored[name]), f"fit.intervals.grazing.{name}")
+        for name in ("normals", "sine", "grown")
+    )
+    found = Grazing(normals, float(sine), float(grown))
     if normals.ndim != 2 or normals.shape[1] != 3 or not (found.sine > 0 and found.grown >= 0):
         raise ValueError(
             "expected grazing with normals of three numbers, a positive sine and grown of 0 or more"
