@@ -211,6 +211,7 @@ def test_recommendations_carry_what_is_measured(measured):
         "condition": "nominal",
         "field_deg": 120.0,
         "own_error_deg": pytest.approx(OWN, rel=1e-4),
+        "own_deg": pytest.approx(OWN, rel=1e-4),  # its name until 0.3
         "own_low_deg": pytest.approx(OWN / spread, rel=1e-3),
         "own_high_deg": pytest.approx(OWN * spread, rel=1e-3),
         "on_bench_deg": None,
