@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 #: Members of JSON objects: new name -> old name.
@@ -29,6 +29,26 @@ MEMBERS: Mapping[str, str] = {
 }
 #: Parameters of queries: old name -> new name.
 PARAMETERS: Mapping[str, str] = {"survive": "tolerate"}
+
+
+def current_parameters(given: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the parameters of a query by their new names, as columns in `sort` and `fields`."""
+    return [
+        (PARAMETERS.get(name, name), _current(value) if name in ("sort", "fields") else value)
+        for name, value in given
+    ]
+
+
+def _current(column: str) -> str:
+    """Return a column's new name: a member's, or one that begins or ends with it."""
+    sign, bare = column[: column.startswith("-")], column.removeprefix("-")
+    for new, old in MEMBERS.items():
+        if bare == old:
+            return sign + new
+    for new, old in MEMBERS.items():
+        if bare.startswith(f"{old}_") or bare.endswith(f"_{old}"):
+            return sign + bare.replace(old, new)
+    return column
 
 
 def with_former_names(document: Any) -> Any:

@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException
 from starlette.requests import Request
 
-from api.schema.former_names import PARAMETERS
+from api.schema.former_names import PARAMETERS, current_parameters
 from api.service.problems import Problem, Violation
 from calibrate.uploaded import LARGEST
 
@@ -68,7 +68,7 @@ class StrictRequest(Request):
             expected = f"at most {MOST_FIELDS} fields name=value joined by &, percent-encoded UTF-8"
             violation = Violation("query", query.decode("latin-1"), expected)
             raise Problem(400, "malformed-query", errors=[violation]) from error
-        return StrictQuery([(PARAMETERS.get(name, name), value) for name, value in pairs])
+        return StrictQuery(current_parameters(pairs))
 
     async def body(self) -> bytes:
         """Return the body; a `Problem` (415, 413, 408) where it is no JSON, or too long."""
@@ -84,7 +84,10 @@ class StrictRequest(Request):
         Problem
             As `body`, and 400 where it is not JSON.
         """
-        return self._parse(await self.body())
+        document = self._parse(await self.body())
+        if isinstance(document, dict):
+            return {PARAMETERS.get(name, name): value for name, value in document.items()}
+        return document
 
     async def form(self, **_: Any) -> FormData:  # type: ignore[override]  # awaited alone
         """Return the form (RFC 7578) in the body; its files wait on disk until all has come.
