@@ -17,7 +17,7 @@ import subprocess
 import sys
 import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -238,17 +238,27 @@ def main(arguments: Sequence[str]) -> int:
     return 0
 
 
-def _end_with_caller(directory: Path) -> None:
-    """End this process, and remove its files, once nobody waits for it: its input ends then."""
+def _end_with_caller(directory: Path) -> Callable[[], None]:
+    """End this process, and remove its files, once nobody waits for it: its input ends then.
+
+    Returns what waits for that where it has begun: files that are gone are no reason to end first.
+    """
+    begun = threading.Event()
 
     def wait() -> None:
         os.read(0, 1)
+        begun.set()
         shutil.rmtree(directory, ignore_errors=True)
         os._exit(1)
 
-    threading.Thread(target=wait, daemon=True, name="end with the caller").start()
+    ending = threading.Thread(target=wait, daemon=True, name="end with the caller")
+    ending.start()
+    return lambda: ending.join() if begun.is_set() else None
 
 
 if __name__ == "__main__":
-    _end_with_caller(Path(sys.argv[1]))
-    sys.exit(main(sys.argv[1:]))
+    wait_for_end = _end_with_caller(Path(sys.argv[1]))
+    try:
+        sys.exit(main(sys.argv[1:]))
+    finally:
+        wait_for_end()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,7 @@ def test_the_process_of_a_caller_that_is_gone_ends_and_removes_the_files(tmp_pat
     directory = tmp_path / "uploaded"
     (directory / "0").mkdir(parents=True)
     (directory / "0" / "bench.csv").write_bytes(b"a stranger's")
+    os.mkfifo(directory / "task.json")  # which nobody writes: the process waits to read it
     command = [sys.executable, "-m", "calibrate.uploaded", str(directory)]
     with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE) as process:
         assert process.stdin is not None
