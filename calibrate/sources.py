@@ -99,10 +99,10 @@ def with_spots(
 ) -> tuple[Table, list[str]]:
     """Return the table with the spot of each row's picture, and what was done to the pictures.
 
-    The table has a column of names of PNG, TIFF, BMP or JPEG files; they start from the directory,
-    and none may lead out of it. `tick` is told how many are read and how many there are. TableError
-    if a picture is missing or is none, by row; SettingsError if the extractor does not read one
-    spot in a frame, or needs more of the drawing.
+    The table has a column of names of PNG, TIFF, BMP or JPEG files; they start from the
+    directory, and may not lead out of it. `tick` is called with the number read and the number
+    of all. TableError if a picture is missing or is none, by row; SettingsError if the
+    extractor does not read one spot in a frame, or needs more of the drawing.
     """
     column = settings.readings.columns[0]
     if column not in table.columns:

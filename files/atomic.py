@@ -2,7 +2,7 @@
 
 Everything is made beside its place, under a hidden name that ends in `SUFFIX`, and renamed into it:
 who reads meanwhile sees the earlier content or the new one, and a process that is killed leaves no
-half of either. What it leaves is removed by who writes there a day later.
+half of either. The next writer removes its leftovers once they are a day old.
 """
 
 from __future__ import annotations

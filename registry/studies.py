@@ -131,7 +131,7 @@ class Study:
         return "unknown" if known is None else known.role
 
     def has_value(self, attribute: str) -> tuple[str, ...]:
-        """Return the stated values that the study stands for: those it only compared are not."""
+        """Return the stated values that the study uses itself, without those it only compares."""
         return tuple(v for v in self.of(attribute) if self.role(attribute, v) != "compared")
 
     def has_nearest(self, attribute: str, value: str) -> bool:

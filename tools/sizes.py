@@ -22,13 +22,16 @@ PARTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("tests/benchmark/results/test_modules",),
     ),
     "running many processes": (
-        tuple(f"benchmark/running/{name}" for name in ("schedule", "times", "workers", "cluster")),
+        tuple(f"benchmark/running/{name}" for name in ("times", "workers", "cluster")),
         tuple(
             f"tests/benchmark/running/test_{name}"
             for name in ("schedule", "times", "workers", "cluster")
         ),
     ),
-    "files": (("files/",), ("tests/files/",)),
+    "files": (
+        ("files/", "survey_data/table_records", "survey_data/json_data"),
+        ("tests/files/",),
+    ),
     "survey importing and additions": (
         ("survey_data/importing/", "survey_data/additions/"),
         ("tests/survey_data/importing/", "tests/survey_data/additions/"),
@@ -38,7 +41,7 @@ PARTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("tests/api/deposit/standin", "tests/api/deposit/test_deposit_upload"),
     ),
     "HTTP machinery": (
-        ("api/web/", "api/server/", "api/http/openapi", "api/http/reference"),
+        ("api/web/", "api/server/", "api/http/openapi"),
         (
             *("tests/api/server/", "tests/api/http/test_http_machinery"),
             "tests/api/browser/test_page_reference",

@@ -1,4 +1,4 @@
-"""Which built sensors each data set stands for, or why it stands for none: ``realism.csv``.
+"""Which built sensors each data set represents, or why it represents none: ``realism.csv``.
 
 The figures of the sensors are facts of `survey_data.hardware`; a data set's own are measured, and
 `benchmark.leaderboard.realism` sets them beside. Typed here are the pairing, the sentence that
@@ -30,10 +30,9 @@ class RealismError(ValueError):
 
 @dataclass(frozen=True)
 class HardwareMatch:
-    """What a data set stands for.
+    """The built sensors that a data set represents, or why it represents none (`idealisation`).
 
-    The nearest built sensors, or why it stands for none (`idealisation`), and a sentence that
-    explains a difference from their figures; empty where there is none to explain.
+    A sentence explains a difference from their figures; it is empty without a difference.
     """
 
     dataset: str

@@ -34,7 +34,7 @@ class PartialAnswer(Generic[Of]):
     def is_finer(self, error_deg: float) -> bool:
         """Return whether it is far more accurate than a given error, of at least half the samples.
 
-        An infinite error stands for none, than which nothing is more accurate.
+        False for an infinite error, which means that there is nothing to compare with.
         """
         return self.coarse_deg < error_deg < math.inf
 

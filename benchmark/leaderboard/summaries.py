@@ -88,7 +88,7 @@ def digits(value: float | None, count: int = 3, nothing: str = "-") -> str:
     ----------
     value : None, NaN and infinities for none
     count : significant digits
-    nothing : what stands for none
+    nothing : text in place of a value that is none
     """
     if value is None or not math.isfinite(value):
         return nothing

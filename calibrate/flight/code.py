@@ -60,7 +60,7 @@ class FlightCode:
 
     @property
     def words(self) -> str:
-        """Name what stands for the model, for a report."""
+        """Name what the code computes instead of the model, for a report."""
         return self.program.words
 
     @property

@@ -53,7 +53,7 @@ class Program:
     columns: tuple[str, ...]  # of the raw readings, in the file's order
     steps: tuple[Step, ...]  # each reads what the one before left
     thermometer: Thermometer | None  # None where no temperature is read
-    words: str  # what stands for the model, for a report
+    words: str  # what the code computes instead of the model, for a report
 
     @property
     def operations(self) -> int:

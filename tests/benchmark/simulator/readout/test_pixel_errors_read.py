@@ -112,7 +112,7 @@ def test_other_draws_stay_when_an_error_is_switched_on(name: str) -> None:
 
 def test_the_noise_of_a_column_is_its_pixels_own_sum() -> None:
     """In the dark, over frames: a column's mean varies by c^2 + v / H, pixels by c^2 + v."""
-    noise_e, frames = 120.0, 100
+    noise_e, frames = 120.0, 200
     sensor = sensor_of("cmos-single-aperture", PixelErrors(column_noise_e=noise_e))
     sensor = replace(sensor, window_jitter_px=0)
     scene = scene_of(sensor, 1)
