@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from api.deposit.frames import FOLDER
 from benchmark.contract import SPLITS, Cell
-from benchmark.datasets.corrected import correction
+from benchmark.datasets.corrected import corrections
 from benchmark.datasets.export import read_card
 from benchmark.datasets.export_arrays import read_archive, samples_of
 from benchmark.datasets.preset import Preset
@@ -211,7 +211,7 @@ class _Deposited:
         path = folder / "references.npz"
         readings = read_archive(path) if path.is_file() else {}
         referred = cast("Preset", _Referred(preset, self.bundle, readings))
-        return RenderedData(data, correction(referred, cell.condition))
+        return RenderedData(data, corrections(referred, cell.condition))
 
 
 @dataclass(frozen=True)
@@ -227,7 +227,11 @@ class _Referred:
         """Names of its own, so that corrections by simulated readings are not taken for these."""
         return (*self.preset.streams, str(self.bundle))
 
-    def references(self, condition: str) -> Mapping[str, NDArray[Any]]:  # noqa: ARG002 - one alone
+    def references(
+        self,
+        condition: str,  # noqa: ARG002 - one alone
+        split: str = "calibration",  # noqa: ARG002 - not renewed under the first condition
+    ) -> Mapping[str, NDArray[Any]]:
         """Return the readings."""
         return self.readings
 

@@ -14,6 +14,7 @@ from types import ModuleType
 from benchmark.datasets import standard, studies
 from benchmark.datasets.calibration import SHOWN_IDEAL
 from benchmark.datasets.card import parameters_of
+from benchmark.datasets.conditions.mission import with_flight
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.datasets.samples import Samples, samples_hash
 from survey_data.nearest import nearest_name
@@ -68,7 +69,7 @@ def get(name: str) -> Preset:
 @cache
 def _presets() -> dict[str, Preset]:
     return {
-        name: preset.with_ideal_calibration() if name in SHOWN_IDEAL else preset
+        name: with_flight(preset.with_ideal_calibration() if name in SHOWN_IDEAL else preset)
         for name, preset in _found_in(standard).items()
     }
 

@@ -1,7 +1,8 @@
 """Observations as methods get them: corrected by the unit's own dark and flat readings.
 
-A bench takes the references of a unit once, and again where its detector has become another one:
-hot, aged, with other noise. Conditions that change only light or mounting share the nominal ones.
+A bench takes the references of a unit once, and again of another detector: one with other noise.
+Conditions that change only light or mounting, or the detector after its calibration, share the
+nominal ones; where they are renewed in flight, the samples of the flight are corrected by those.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, cast
 
 from algorithms.references import ReferenceCorrection
+from benchmark.contract import SPLITS
 from benchmark.simulator.light.memory import memory
 from benchmark.simulator.sensor import UnitSpread
 
@@ -23,17 +25,35 @@ _PARTS = ("detector", "readout")
 
 
 def reference_condition(preset: Preset, condition: str) -> str:
-    """Return the first condition whose detector is that of this one: its references serve both."""
+    """Return the first condition calibrated with this detector: its references serve both."""
     wanted = _parts(preset, condition)
     return next(name for name in preset.conditions if _parts(preset, name) == wanted)
 
 
-def correction(preset: Preset, condition: str) -> ReferenceCorrection | None:
-    """Return the correction of this unit's readings; None where a sensor has no references."""
-    shared, known = preset.conditions[0], reference_condition(preset, condition)
-    names = (*preset.streams, preset.unit, known)
-    unit = _Unit(names, preset.condition(known).sensor, preset.offered, preset)
-    return _shared(unit) if known == shared else _made(unit)
+def correction(
+    preset: Preset, condition: str, split: str = "calibration"
+) -> ReferenceCorrection | None:
+    """Return the correction of a split of this unit; None where a sensor has no references."""
+    shared, known = preset.conditions[0], condition
+    renewed = split != "calibration" and _renews(preset, condition)
+    if not renewed:
+        known, split = reference_condition(preset, condition), "calibration"
+    names = (*preset.streams, preset.unit, known, split)
+    unit = _Unit(names, preset.condition(known).referred(split), preset.offered, preset)
+    return _shared(unit) if (known, renewed) == (shared, False) else _made(unit)
+
+
+def corrections(preset: Preset, condition: str) -> dict[str, ReferenceCorrection | None]:
+    """Return the correction of every split; one for all unless the references are renewed."""
+    first = correction(preset, condition)
+    later = correction(preset, condition, "test") if _renews(preset, condition) else first
+    return {split: first if split == "calibration" else later for split in SPLITS}
+
+
+def _renews(preset: Preset, condition: str) -> bool:
+    """Say whether references are taken again after the calibration: at will, or on a mission."""
+    setup = preset.condition(condition)
+    return setup.renewed or setup.mission is not None
 
 
 @dataclass(frozen=True)
@@ -47,8 +67,8 @@ class _Unit:
 
 
 def _made(unit: _Unit) -> ReferenceCorrection | None:
-    condition = str(unit.names[-1])
-    readings = unit.preset.references(condition)
+    condition, split = str(unit.names[-2]), str(unit.names[-1])
+    readings = unit.preset.references(condition, split)
     dark = next((r for name, r in readings.items() if name.startswith("dark_")), None)
     flat = next((r for name, r in readings.items() if name.startswith("flat_")), None)
     if dark is None or flat is None:
@@ -83,8 +103,8 @@ def references_used(preset: Preset) -> str:
 
 
 def _sensor(preset: Preset, condition: str) -> Any:
-    """Return the sensor itself, without what moves or ages it."""
-    sensor = preset.condition(condition).sensor
+    """Return the sensor that was calibrated, without what moves or ages it."""
+    sensor: Any = preset.condition(condition).referred()
     while not any(hasattr(sensor, name) for name in _PARTS) and hasattr(sensor, "sensor"):
         sensor = sensor.sensor
     return sensor

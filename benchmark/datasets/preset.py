@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Self, cast, get_args
@@ -24,6 +24,7 @@ from benchmark.datasets.units import assemble, tolerances
 from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
+from benchmark.simulator.flight.mission import Lifetime, Mission
 from benchmark.simulator.flight.spin import Spin
 from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -58,6 +59,12 @@ class Condition:
         What the calibration split is taken on; None for a perfect one, which knows the Sun.
     spin
         How the sensor turns while test samples are exposed, at known rates, or None.
+    calibrated
+        The sensor as it was when it was calibrated, new and at 25 deg C; None for `sensor`.
+    renewed
+        Whether dark and flat readings are taken again of `sensor`, after the calibration.
+    mission
+        What happens to it between calibration and test, or None.
     """
 
     description: str
@@ -67,8 +74,13 @@ class Condition:
     geometry: SensorGeometry | None = None
     bench: Reference | None = STANDARD_BENCH
     spin: Spin | None = None
+    calibrated: Sensor | None = None
+    renewed: bool = False
+    mission: Mission | None = None
 
     def __post_init__(self) -> None:
+        if self.renewed and self.calibrated is None:
+            raise ValueError("renewed readings need a sensor `calibrated` before; got None")
         if self.spin is not None and not getattr(self.sensor, "sees_motion", False):
             raise ValueError(
                 "motion is simulated for frames that are exposed over time (RollingFrameSensor); "
@@ -79,6 +91,12 @@ class Condition:
                 "light from the Earth is simulated for faces and for sensors behind openings; got "
                 f"{type(self.sensor).__name__}"
             )
+
+    def referred(self, split: str = "calibration") -> Sensor:
+        """Return the sensor whose dark and flat readings a split is corrected by."""
+        if split != "calibration" and self.renewed:
+            return self.sensor
+        return self.calibrated or self.sensor
 
 
 @dataclass(frozen=True)
@@ -112,6 +130,9 @@ class Preset:
         Poses and passes of the split ``repeat``; which unit of the sensor is seen (`for_unit`).
     batch
         Samples simulated together, `BATCH` for None; large frames are faster a few at a time.
+    drawn_as
+        Version that its random streams are named by, where a later one changed some conditions, or
+        what is known beside the readings, and drew nothing anew; None for its own.
     """
 
     name: str
@@ -131,6 +152,7 @@ class Preset:
     repeats: Repeats = field(default_factory=Repeats)
     unit: int = 0
     batch: int | None = None
+    drawn_as: int | None = None
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -140,7 +162,7 @@ class Preset:
     @property
     def streams(self) -> tuple[str, int]:
         """Name and version that random streams begin with."""
-        return self.name, self.version
+        return self.name, self.version if self.drawn_as is None else self.drawn_as
 
     @property
     def context_columns(self) -> tuple[str, ...]:
@@ -177,7 +199,12 @@ class Preset:
         unit = (*self.streams, "unit", number)
         setups = dict(self.setups)
         for name, setup in self.setups.items():
-            setups[name] = dataclasses.replace(setup, sensor=assemble(setup.sensor, *unit))
+            before = setup.calibrated
+            setups[name] = dataclasses.replace(
+                setup,
+                sensor=assemble(setup.sensor, *unit),
+                calibrated=None if before is None else assemble(before, *unit),
+            )
         return dataclasses.replace(self, setups=setups, unit=number)
 
     def reference_error_deg(self, condition: str) -> float:
@@ -215,14 +242,64 @@ class Preset:
     def sensor_for(self, condition: str, split: str) -> Sensor:
         """Return the sensor as a split is taken with it: before a lamp the Sun has its size."""
         setup = self.condition(condition)
-        if split == "calibration" and isinstance(setup.bench, Bench):
-            return setup.bench.seen_by(setup.sensor)
-        return setup.sensor
+        if split != "calibration":
+            return setup.sensor
+        sensor = setup.calibrated or setup.sensor
+        return setup.bench.seen_by(sensor) if isinstance(setup.bench, Bench) else sensor
 
-    def fixed_pattern(self, condition: str) -> FixedPattern:
-        """Return the unit as this condition shows it."""
+    def fixed_pattern(self, condition: str, split: str = "test") -> FixedPattern:
+        """Return the unit as a split shows it under this condition."""
         unit = (self.unit,) if self.unit else ()
-        return self.condition(condition).sensor.fixed_pattern(*self.streams, "unit", *unit)
+        setup = self.condition(condition)
+        before = split == "calibration" and setup.calibrated is not None
+        sensor = cast("Sensor", setup.calibrated) if before else setup.sensor
+        return sensor.fixed_pattern(*self.streams, "unit", *unit)
+
+    def lifetime(self, condition: str) -> Lifetime | None:
+        """Return what the condition's mission does to this unit; None without one."""
+        mission = self.condition(condition).mission
+        if mission is None:
+            return None
+        return mission.lifetime(*self._of_unit(*self.streams, "mission"))
+
+    def taken(
+        self, condition: str, split: str, scene: Scene
+    ) -> Iterator[tuple[Sensor, Scene, FixedPattern]]:
+        """Give the samples of a split in parts, each with the sensor and the unit as they are then.
+
+        Parameters
+        ----------
+        condition, split
+            Which.
+        scene
+            Its first samples, or all, in order.
+
+        Yields
+        ------
+        sensor, scene, pattern
+            One part, but for a test on a mission: one a moment of it, the Suns as the head that was
+            calibrated would see them. A repeat is taken at one moment.
+        """
+        sensor = self.sensor_for(condition, split)
+        pattern, lifetime = self.fixed_pattern(condition, split), self.lifetime(condition)
+        if lifetime is not None:
+            sensor = lifetime.built(sensor)
+        if lifetime is None or split == "calibration":
+            yield sensor, scene, pattern
+            return
+        moments = lifetime.moments
+        if split == REPEAT:
+            moments = moments[len(moments) // 2 :][:1]
+        total = len(scene) if split == REPEAT else self._tested
+        ends = [total * (k + 1) // len(moments) for k in range(len(moments))]
+        for start, stop, moment in zip([0, *ends], ends, moments, strict=False):
+            part = scene.part(start, min(stop, len(scene)))
+            if len(part):
+                seen = lifetime.at(moment, sensor).seen(part.sun, sensor)
+                then = lifetime.sensor(sensor, moment)
+                unit = (self.unit,) if self.unit else ()
+                built = then.fixed_pattern(*self.streams, "unit", *unit)
+                yield then, part.seen_from(seen), lifetime.pattern(built, moment)
 
     def scene(self, condition: str, split: str, n: int | None = None) -> Scene:
         """All light of a split's first n samples, or of all; ValueError for n below 1."""
@@ -251,7 +328,7 @@ class Preset:
         if setup.earth is None or known != "test":
             return bare
         nadir = setup.earth.draw_nadir(sun, generator(*names, "nadir"))[rows]
-        pattern = self.fixed_pattern(condition)
+        pattern = self.fixed_pattern(condition, known)
         if isinstance(setup.sensor, Faces):
             seen = setup.sensor.earthlight(setup.earth, bare.sun, nadir, pattern)
         else:
@@ -275,21 +352,24 @@ class Preset:
         ValueError
             On an unknown condition or split, naming the known ones; on n below 1.
         """
-        sensor = self.sensor_for(condition, split)
         scene = self.scene(condition, split, n)
-        pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, split))
         # passes over the same poses share their light where light is remembered
         poses = len(self.repeats.pose_indices(self._tested))
         size = poses if split == REPEAT else self.batch or BATCH
-        batch = sensor.observe(scene.part(0, size), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice
-        observations = np.empty((len(scene), *batch.shape[1:]), batch.dtype)
-        observations[: len(batch)] = batch
-        for start in range(size, len(scene), size):
-            del batch  # or two would be held while the next is made
-            batch = sensor.observe(scene.part(start, start + size), pattern, streams)
-            observations[start : start + size] = batch
+        observations, done = np.empty(0), 0
+        for sensor, seen, pattern in self.taken(condition, split, scene):
+            for start in range(0, len(seen), size):
+                batch = sensor.observe(seen.part(start, start + size), pattern, streams)
+                if not done:
+                    observations = np.empty((len(scene), *batch.shape[1:]), batch.dtype)
+                observations[done : done + len(batch)] = batch
+                done += len(batch)
+                del batch  # or two would be held while the next is made
+        lifetime = self.lifetime(condition)
+        if lifetime is not None:
+            observations = lifetime.read(observations, self.condition(condition).sensor)
         bench = self.condition(condition).bench
         if split != "calibration" or bench is None:
             return Samples(observations, scene.sun, scene.origin_px)
@@ -301,22 +381,29 @@ class Preset:
 
         With the unit known, and with what `references` tell of it. Parameters as `generate`.
         """
-        setup = self.condition(condition)
-        return cramer_rao(
-            self.sensor_for(condition, split),
-            self.scene(condition, split, n),
-            self.fixed_pattern(condition),
-            setup.irradiance,
-            self.bound_step_rad,
-            self.batch or BATCH,
-            self.offered,
-        )
+        light = self.condition(condition).irradiance
+        parts = [
+            cramer_rao(
+                sensor,
+                seen,
+                pattern,
+                light,
+                self.bound_step_rad,
+                self.batch or BATCH,
+                self.offered,
+            )
+            for sensor, seen, pattern in self.taken(
+                condition, split, self.scene(condition, split, n)
+            )
+        ]
+        return parts[0] if len(parts) == 1 else Bound.join(parts)
 
-    def references(self, condition: str) -> dict[str, NDArray[Any]]:
-        """Mean flat and dark readings of this unit, as a calibration offers them.
+    def references(self, condition: str, split: str = "calibration") -> dict[str, NDArray[Any]]:
+        """Mean flat and dark readings of this unit, by which a split is corrected.
 
-        Of every element of the detector: ``dark_dn`` and ``flat_dn`` of pixels, ``_ua`` of
-        currents, ``_hz`` of frequencies. Empty for sensors whose elements have no readings of
+        Those of the calibration, unless the condition renews them. Of every element of the
+        detector: ``dark_dn`` and ``flat_dn`` of pixels, ``_ua`` of currents, ``_hz`` of
+        frequencies. Empty for sensors whose elements have no readings of
         their own (lenses with trails, events). Light and number: `offered`.
 
         Raises
@@ -324,11 +411,35 @@ class Preset:
         ValueError
             On an unknown condition, naming the known ones.
         """
-        sensor = self.condition(condition).sensor
+        sensor = self.condition(condition).referred(split)
         if not isinstance(sensor, UnitSpread):
             return {}
-        streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, "references"))
-        return sensor.reference_readings(self.fixed_pattern(condition), self.offered, streams)
+        lifetime = self.lifetime(condition)
+        if lifetime is not None and split != "calibration":
+            return self._dark_again(condition, lifetime)
+        renewed = split != "calibration" and self.condition(condition).renewed
+        named = (condition, "references", *(("renewed",) if renewed else ()))
+        streams = NoiseStreams.named(*self._of_unit(*self.streams, *named))
+        pattern = self.fixed_pattern(condition, "test" if renewed else "calibration")
+        return sensor.reference_readings(pattern, self.offered, streams)
+
+    def _dark_again(self, condition: str, lifetime: Lifetime) -> dict[str, NDArray[Any]]:
+        """Return the references of the ground, dark readings replaced by those in an eclipse.
+
+        A condition with a mission flies the sensor of the first one, whose references these are.
+        """
+        ground = self.references(self.conditions[0])
+        sensor = lifetime.sensor(self.condition(condition).sensor, lifetime.eclipse)
+        unit = (self.unit,) if self.unit else ()
+        built = sensor.fixed_pattern(*self.streams, "unit", *unit)
+        streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, "eclipse"))
+        again = cast("UnitSpread", sensor).reference_readings(built, self.offered, streams)
+        found = {}
+        for name, reading in ground.items():
+            dark = name.replace("flat_", "dark_")
+            # a flat is its dark and the light, and the light was seen on the ground alone
+            found[name] = again[dark] if name == dark else reading - ground[dark] + again[dark]
+        return found
 
     def parameters(self, condition: str) -> dict[str, Any]:
         """Everything the numbers of a condition depend on, as plain JSON values."""
@@ -350,6 +461,10 @@ class Preset:
             "unit": self.unit,
             "spin": setup.spin,
         }
+        if setup.calibrated is not None:
+            named |= {"calibrated": setup.calibrated, "renewed": setup.renewed}
+        if setup.mission is not None:
+            named["mission"] = setup.mission
         return dict(describe(named))
 
     def card(self) -> dict[str, Any]:

@@ -10,7 +10,8 @@
    units; of the others that err at most `BEHIND` times as much the first `MOST` on
    `UNITS_BEHIND`. What is further behind is scored no further.
 4. Of the `LEADING` first pipelines those that can lead or are not far behind on `UNITS` units
-   again, calibrated on drawn benches (`ON_BENCH`).
+   again: calibrated on drawn benches (`ON_BENCH`), and under the conditions of what becomes of a
+   sensor after its calibration (`SINCE`).
 
 What another condition does to a pipeline far behind under the first one helps nobody choose;
 `sunatlas benchmark` measures it for whoever asks.
@@ -49,6 +50,8 @@ UNITS_BEHIND = 5
 MOST = 20
 #: Pipelines of a board that are scored under every condition, and on drawn benches.
 LEADING = 5
+#: Conditions of sensors that are no longer as they were calibrated: chance differs by unit.
+SINCE = ("flight", "hot", "cold", "aged")
 
 
 def compare(parts: Parts) -> dict[str, str]:
@@ -105,6 +108,14 @@ def followers(
             for cell in leading
             if cell in units
             for unit in range(UNITS)
+        ]
+        found += [
+            replace(cell, condition=condition, unit=unit)
+            for cell in leading
+            if cell in units
+            for condition in SINCE
+            if condition in preset.conditions
+            for unit in range(1, UNITS)
         ]
     return sorted(found)
 

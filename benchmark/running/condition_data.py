@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from benchmark.canonical import digest
 from benchmark.contract import SPLITS, Cell
 from benchmark.datasets.controls import board_facts
-from benchmark.datasets.corrected import correction
+from benchmark.datasets.corrected import corrections
 from benchmark.datasets.pins import Pin
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.separation import store
@@ -102,7 +102,7 @@ def render(preset: Preset, condition: str, unit: int, *, all_observable: bool) -
         data = _of_another_unit(preset, condition, splits, all_observable)
     else:
         data = _of_unit_zero(preset, condition, splits, bound)
-    return RenderedData(data, correction(seen_by, condition))
+    return RenderedData(data, corrections(seen_by, condition))
 
 
 def _leave_room(splits: Mapping[str, Samples], *owner: Hashable) -> None:

@@ -9,9 +9,8 @@ import numpy as np
 
 from algorithms.contract import Extractor, Floats
 from algorithms.pipeline import extract_features
-from algorithms.references import ReferenceCorrection
 from benchmark.datasets.corrected import correct
-from benchmark.running.stages import ConditionData, RenderedData
+from benchmark.running.stages import ConditionData, Corrections, RenderedData
 
 if TYPE_CHECKING:
     from benchmark.datasets.preset import Preset
@@ -27,20 +26,20 @@ _BATCH_BYTES = 8 * 2**20
 def correct_readings(made: RenderedData, preset: Preset) -> ConditionData:
     """Return data as extractors get them."""
     splits = dict(made.data.splits)
-    left = _corrected_once(splits, made.correction)
-    return replace(made.data, preset=preset, splits=splits, correction=left)
+    left = _corrected_once(splits, made.corrections)
+    return replace(made.data, preset=preset, splits=splits, corrections=left)
 
 
 def found_features(data: ConditionData, extractor: Extractor, split: str) -> Floats:
     """Return what an extractor finds in a split (N, F), found once for all who ask."""
     place = type(extractor), split
     if place not in data.features:
-        samples = data.splits[split]
+        samples, by = data.splits[split], data.corrections.get(split)
         step = len(samples.sun)
-        if data.correction is not None:
+        if by is not None:
             step = max(1, _BATCH_BYTES // (8 * int(np.prod(samples.observations.shape[1:]))))
         parts = (_part(samples, start, start + step) for start in range(0, len(samples.sun), step))
-        seen = (correct(data.correction, part) for part in parts)
+        seen = (correct(by, part) for part in parts)
         found = [extract_features(extractor, one.observations, one.origin_px) for one in seen]
         data.features[place] = found[0] if len(found) == 1 else np.concatenate(found)
     return data.features[place]
@@ -63,15 +62,13 @@ def _part(samples: Samples, start: int, stop: int) -> Samples:
     )
 
 
-def _corrected_once(
-    splits: dict[str, Samples], by: ReferenceCorrection | None
-) -> ReferenceCorrection | None:
+def _corrected_once(splits: dict[str, Samples], by: Corrections) -> Corrections:
     """Put corrected samples in the place of those read; return what is left to correct by."""
     size = 8 * sum(np.asarray(samples.observations).size for samples in splits.values())
-    later = by if size > _CORRECTED_BYTES else None
+    later = by if size > _CORRECTED_BYTES else {}
     for split, samples in splits.items():
-        if later is None:
-            splits[split] = correct(by, samples)
+        if not later:
+            splits[split] = correct(by.get(split), samples)
         # methods share them, and what they find in them
         np.asarray(splits[split].observations).flags.writeable = False
     return later

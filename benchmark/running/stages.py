@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from benchmark.datasets.preset import Preset
     from benchmark.datasets.samples import Samples
     from benchmark.metrics.bounds import Bound
+
+
+#: By split; None where a sensor has no references.
+Corrections = Mapping[str, ReferenceCorrection | None]
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,7 @@ class ConditionData:
         Of unit 0.
     splits
         Samples by split; another unit than the standard one has no split ``repeat``. They are
-        corrected by the unit's references already where there is no `correction`. Without
+        corrected by the unit's references already where there are no `corrections`. Without
         observations where only directions and bounds were asked for (`truth`).
     bound_deg, bound_unit_deg
         Cramer-Rao bounds (N,) of the test split, with the unit known and unknown; None for another
@@ -56,8 +61,8 @@ class ConditionData:
         Of the standard unit, of the data before correction; none for another.
     bound
         As a whole, of the standard unit; None for another.
-    correction
-        By the unit's references, of samples that would take too much memory corrected.
+    corrections
+        By split, by the unit's references, of samples that would take too much memory corrected.
     features
         What extractors found, by their classes and splits: for who asks for the same again.
     """
@@ -69,16 +74,16 @@ class ConditionData:
     observable: NDArray[np.bool_]
     pins: tuple[Pin, ...]
     bound: Bound | None = None
-    correction: ReferenceCorrection | None = None
+    corrections: Corrections = field(default_factory=dict)
     features: dict[tuple[type[Extractor], str], Floats] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class RenderedData:
-    """Data as the sensor reads them, and how they are to be corrected."""
+    """Data as the sensor reads them, and how each split is to be corrected."""
 
     data: ConditionData
-    correction: ReferenceCorrection | None
+    corrections: Corrections
 
 
 @dataclass(frozen=True)

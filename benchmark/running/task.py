@@ -113,7 +113,7 @@ def _features(task: Task, kept: KeptStages | None) -> dict[str, Floats]:
         return known
     data, extractor = _data(task, generate, kept), _extractor(task)
     found = {split: found_features(data, extractor, split) for split in data.splits}
-    if data.correction is not None:  # of frames that leave little room for what is free
+    if data.corrections:  # of frames that leave little room for what is free
         release_free_memory()
     if kept is not None:
         kept.put(FEATURES, cell, found)

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 from functools import partial
 from typing import Any
 
+from benchmark.datasets.conditions.since_calibration import RECALIBRATED
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.drift import ThermalCycle
 from benchmark.simulator.light.environment import Earth
@@ -65,6 +66,13 @@ def conditions_aloft(
     for name in ("low-noise", "high-noise", "misaligned"):
         found[name] = seen(said[name], flying(name))
     hot = replace(nominal, thermal=_WARM)
-    found["hot"] = seen("The nominal sensor on a satellite 40 K warmer throughout.", hot)
+    # dark and flat readings are those of the ground: there are none to be renewed
+    found["hot"] = replace(
+        seen("The nominal sensor, its satellite 40 K warmer since it was calibrated.", hot),
+        calibrated=nominal,
+    )
+    found[f"hot{RECALIBRATED}"] = seen(
+        "The nominal sensor on a satellite 40 K warmer throughout.", hot
+    )
     found["stable"] = seen(said["stable"], still)
     return found

@@ -24,6 +24,7 @@ def code_dial(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     units: str,
     sensor: CodeDialSensor,
     half_fov_deg: float,
@@ -36,6 +37,7 @@ def code_dial(
     return Preset(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector="PD",
         mask="Encoded",
         observation=Observation.CURRENTS,
@@ -105,7 +107,7 @@ def conditions(sensor: CodeDialSensor) -> dict[str, Condition]:
             ),
             LIGHT,
         ),
-        "hot": hot(sensor, ", to a ninth of the current in full sunlight"),
+        **hot(sensor, ", to a ninth of the current in full sunlight"),
         "square-windows": Condition(
             "The nominal sensor with plain windows of half a period as fine rows: all odd "
             "harmonics, so the arc tangent of the fine currents has a periodic error.",

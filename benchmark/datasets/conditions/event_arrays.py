@@ -10,6 +10,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED, careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.conditions.since_calibration import since_calibration
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.masks.apertures import Mask
@@ -28,6 +29,7 @@ def event_array(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     mask: str,
     sensor: EventSensor,
     geometry: SensorGeometry,
@@ -39,6 +41,7 @@ def event_array(
     return Preset(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector="Event",
         mask=mask,
         observation=Observation.EVENTS,
@@ -122,9 +125,12 @@ def conditions(sensor: EventSensor) -> dict[str, Condition]:
             "The nominal unit with its threshold mismatch grown to 10 %.",
             replace(sensor, detector=replace(pixels, threshold_mismatch=0.1)),
         ),
-        "hot": seen(
-            "The nominal unit at 80 deg C: dark current doubles every 7 K and hastens dim pixels.",
+        **since_calibration(
+            "hot",
+            "The nominal unit at 80 deg C: dark current doubles every 7 K and hastens dim pixels",
             replace(sensor, detector=hot),
+            sensor,
+            LIGHT,
         ),
         "albedo": with_albedo(sensor),
     }

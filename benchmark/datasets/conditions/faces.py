@@ -8,6 +8,8 @@ from typing import TypeVar
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.propagation import LIGHT, NOTHING_SHADES
+from benchmark.datasets.conditions.since_calibration import since_calibration
+from benchmark.datasets.conditions.since_calibration import without as leave_out
 from benchmark.datasets.fields import Field
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.environment import Earth, Irradiance
@@ -34,6 +36,7 @@ def faces(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     detector: str,
     normals: Normals,
     order: str,
@@ -48,6 +51,7 @@ def faces(
     return Preset(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector=detector,
         mask="Maskless",
         observation=Observation.CURRENTS,
@@ -109,7 +113,7 @@ def photodiode_conditions(
             replace(sensor, normal_error_deg=2.0),
             LIGHT,
         ),
-        "hot": hot(sensor),
+        **hot(sensor),
         "stray-light": Condition(
             "The nominal sensor under stray light of 5 % of sunlight (1 % from sample to sample), "
             "equal on all faces: the interference that Wang2019 suppresses.",
@@ -118,7 +122,7 @@ def photodiode_conditions(
         ),
         "albedo": albedo(sensor, "sensor"),
     }
-    return {name: setup for name, setup in setups.items() if name not in without}
+    return leave_out(setups, *without)
 
 
 def converter_conditions(sensor: FrequencySensor) -> dict[str, Condition]:
@@ -152,10 +156,12 @@ def converter_conditions(sensor: FrequencySensor) -> dict[str, Condition]:
             replace(sensor, normal_error_deg=2.0),
             LIGHT,
         ),
-        "hot": Condition(
+        **since_calibration(
+            "hot",
             "The nominal sensor at 80 deg C: the dark frequency doubles every 7 K, frequencies "
-            "rise by 100 ppm/K.",
+            "rise by 100 ppm/K",
             replace(sensor, readout=warm),
+            sensor,
             LIGHT,
         ),
         "albedo": albedo(sensor, "sensor"),
@@ -177,7 +183,7 @@ def opto_isolator_conditions(sensor: OptoIsolatorSensor) -> dict[str, Condition]
             replace(sensor, normal_error_deg=5.0),
             LIGHT,
         ),
-        "hot": hot(sensor),
+        **hot(sensor),
         "matched": Condition(
             "The nominal sensor with opto-isolators selected for gains within 2 %.",
             replace(sensor, readout=replace(sensor.readout, gain_mismatch=0.02)),
@@ -205,12 +211,14 @@ def noises(sensor: Amplified, what: str, converter: str) -> dict[str, Condition]
     }
 
 
-def hot(sensor: Amplified) -> Condition:
-    """Return the condition of 80 deg C."""
+def hot(sensor: Amplified) -> dict[str, Condition]:
+    """Return the conditions of 80 deg C."""
     warm = replace(sensor.readout, dark=replace(sensor.readout.dark, temperature_c=80.0))
-    return Condition(
-        "The nominal sensor at 80 deg C: dark current doubles every 7 K.",
+    return since_calibration(
+        "hot",
+        "The nominal sensor at 80 deg C: dark current doubles every 7 K",
         replace(sensor, readout=warm),
+        sensor,
         LIGHT,
     )
 

@@ -202,15 +202,7 @@ class FlightPreset(Preset):
 
     Samples carry the context columns that `card` lists. The calibration split is flown too, on
     earlier orbits of the same unit, so that filters have a time series to be tuned on.
-
-    Attributes
-    ----------
-    drawn_as
-        Version that its random streams are named by, where a later one added columns to the
-        context and moved nothing else; None for its own.
     """
-
-    drawn_as: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.directions, Flight):
@@ -237,11 +229,6 @@ class FlightPreset(Preset):
         """Where the satellite flies."""
         return cast("Flight", self.directions)
 
-    @property
-    def streams(self) -> tuple[str, int]:
-        """As `Preset`, with the version that it was drawn as."""
-        return self.name, self.version if self.drawn_as is None else self.drawn_as
-
     def _scene(self, condition: str, known: Split, rows: Rows = slice(None)) -> TimedScene:
         """Return what a split looks at; no sunlight, direct or stray, reaches it in eclipse.
 
@@ -251,7 +238,7 @@ class FlightPreset(Preset):
         leg = self.flight.leg(known)
         names = (*self.streams, known)
         _, stray = setup.irradiance.draw(len(leg.time_s), generator(*names, "irradiance"))
-        sensor = cast("DriftingSensor", setup.sensor)
+        sensor = cast("DriftingSensor", self.sensor_for(condition, known))
         origin = sensor.origins(leg.sun_body, generator(*names, "window"))
         if origin is not None:
             origin = origin[_last_seen(~leg.eclipse)]
@@ -267,7 +254,7 @@ class FlightPreset(Preset):
             return scene
         # from within the cylinder no sunlit ground is in view
         lit = np.flatnonzero(~leg.eclipse[rows])
-        nadir, pattern = leg.nadir_body[rows][lit], self.fixed_pattern(condition)
+        nadir, pattern = leg.nadir_body[rows][lit], self.fixed_pattern(condition, known)
         if isinstance(setup.sensor, Faces):
             light = setup.sensor.earthlight(setup.earth, scene.sun[lit], nadir, pattern)
         else:
@@ -298,7 +285,7 @@ class FlightPreset(Preset):
             *names, "horizon"
         ).standard_normal((len(leg.time_s), 2))
         seen = leg.nadir_body + tilt[:, :1] * first + tilt[:, 1:] * second
-        thermal = cast("DriftingSensor", setup.sensor).thermal
+        thermal = cast("DriftingSensor", self.sensor_for(condition, known)).thermal
         temperature = thermal.temperature(leg.orbit, leg.sun, leg.since_s)
         field_nt, offset = leg.field_nt, np.zeros(3)
         aboard = cast("Instruments | None", setup.bench)

@@ -41,23 +41,19 @@ class FullFramePreset(UnevenPreset):
         TypeError
             When the condition's sensor is no `MultiSpotSensor`.
         """
-        setup = self.condition(condition)
-        sensor = setup.sensor
-        if not isinstance(sensor, MultiSpotSensor):
-            raise TypeError(f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}")
-        scene, pattern = self.scene(condition, split, n), self.fixed_pattern(condition)
-        parts, seen = [], for_bound(sensor)
-        for start in range(0, len(scene), BOUND_BATCH):
-            part = scene.part(start, start + BOUND_BATCH)
-            lit = LitPixels(seen, part, pattern)
-            parts.append(
-                cramer_rao(
-                    lit,
-                    part,
-                    pattern,
-                    setup.irradiance,
-                    self.bound_step_rad,
-                    references=self.offered,
+        light, parts = self.condition(condition).irradiance, []
+        for sensor, scene, pattern in self.taken(condition, split, self.scene(condition, split, n)):
+            if not isinstance(sensor, MultiSpotSensor):
+                raise TypeError(
+                    f"{self.name} must hold a MultiSpotSensor; got {type(sensor).__name__}"
                 )
-            )
+            seen = for_bound(sensor)
+            for start in range(0, len(scene), BOUND_BATCH):
+                part = scene.part(start, start + BOUND_BATCH)
+                lit = LitPixels(seen, part, pattern)
+                parts.append(
+                    cramer_rao(
+                        lit, part, pattern, light, self.bound_step_rad, references=self.offered
+                    )
+                )
         return Bound.join(parts)

@@ -12,6 +12,7 @@ from dataclasses import replace
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED, misalign
 from benchmark.datasets.conditions.pixel_arrays import units
+from benchmark.datasets.conditions.since_calibration import since_calibration
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.datasets.repeats import FEW
@@ -43,6 +44,7 @@ def lens_camera(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     detector: str,
     camera: LensCamera,
     half_fov_deg: float,
@@ -56,6 +58,7 @@ def lens_camera(
     return Preset(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector=detector,
         mask="Lens",
         observation=Observation.FRAMES,
@@ -135,8 +138,10 @@ def blooming_conditions(camera: LensCamera) -> dict[str, Condition]:
     loud = replace(pixels, read_noise_e=600.0, gain_e_per_dn=180.0, offset_dn=20.0)
     hot = replace(pixels, dark=replace(pixels.dark, temperature_c=60.0))
 
+    light = Irradiance(stray=0.02, stray_spread=0.004)
+
     def seen(text: str, through: LensCamera) -> Condition:
-        return Condition(text, BloomingSensor(through), Irradiance(stray=0.02, stray_spread=0.004))
+        return Condition(text, BloomingSensor(through), light)
 
     return {
         "nominal": seen(
@@ -155,9 +160,12 @@ def blooming_conditions(camera: LensCamera) -> dict[str, Condition]:
             "and a half pixels off centre.",
             replace(camera, assembly=misalign(0.05, 0.03, -0.025)),
         ),
-        "hot": seen(
-            "The nominal camera at 60 deg C: dark current doubles every 7 K.",
-            replace(camera, detector=hot),
+        **since_calibration(
+            "hot",
+            "The nominal camera at 60 deg C: dark current doubles every 7 K",
+            BloomingSensor(replace(camera, detector=hot)),
+            BloomingSensor(camera),
+            light,
         ),
         "glare": seen(_glare(45, 10, "brighter ghosts"), replace(camera, flare=glare)),
         "saturation-clouds": seen(

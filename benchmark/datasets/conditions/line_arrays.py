@@ -12,6 +12,7 @@ from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import as_bought
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
+from benchmark.datasets.conditions.since_calibration import since_calibration
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.sun_disc import SolarDisc
@@ -46,6 +47,7 @@ def line_arrays(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     detector: str,
     mask: str,
     sensor: LineSensor,
@@ -62,6 +64,7 @@ def line_arrays(
     return kind(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector=detector,
         mask=mask,
         observation=Observation.PROFILES,
@@ -212,10 +215,6 @@ def conditions(sensor: LineSensor, half_fov_deg: float) -> dict[str, Condition]:
             ),
             misaligned,
         ),
-        "hot": (
-            "The nominal sensor at 80 deg C: dark current doubles every 7 K.",
-            replace(sensor, detector=hot),
-        ),
     }
     if not sensor.camera.glass.plates:
         setups["glass"] = (
@@ -231,7 +230,17 @@ def conditions(sensor: LineSensor, half_fov_deg: float) -> dict[str, Condition]:
         )
         for name, (text, setup) in setups.items()
     }
-    return {**named, "albedo": with_albedo(named["nominal"].sensor)}
+    return {
+        **named,
+        **since_calibration(
+            "hot",
+            "The nominal sensor at 80 deg C: dark current doubles every 7 K",
+            replace(sensor, detector=hot),
+            sensor,
+            LIGHT,
+        ),
+        "albedo": with_albedo(sensor),
+    }
 
 
 def design(sensor: LineSensor, half_fov_deg: float) -> SensorGeometry:

@@ -16,6 +16,7 @@ from benchmark.datasets.conditions.pixel_arrays import (
     pixel_conditions,
     units,
 )
+from benchmark.datasets.conditions.since_calibration import without as leave_out
 from benchmark.datasets.fields import Field
 from benchmark.datasets.preset import Condition
 from benchmark.datasets.repeats import FEW
@@ -35,6 +36,7 @@ def many_spots(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     detector: str,
     mask: str,
     sensor: MultiSpotSensor,
@@ -53,7 +55,7 @@ def many_spots(
     Parameters
     ----------
     without
-        Conditions of pixel arrays that it does without.
+        Conditions of pixel arrays that it does without, and without amends for.
     more
         Conditions of its own, at the end.
     known, regime
@@ -64,6 +66,7 @@ def many_spots(
     return FullFramePreset(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector=detector,
         mask=mask,
         observation=Observation.FRAMES,
@@ -77,7 +80,7 @@ def many_spots(
             **known,
         ),
         setups={
-            **{condition: setup for condition, setup in setups.items() if condition not in without},
+            **leave_out(setups, *without),
             "missing-apertures": missing_apertures(sensor),
             "albedo": with_albedo(setups["nominal"].sensor),
             **more,

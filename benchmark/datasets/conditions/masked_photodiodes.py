@@ -10,6 +10,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.conditions.since_calibration import since_calibration
 from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -34,6 +35,7 @@ def masked_photodiodes(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     detector: str,
     mask: str,
     readings: str,
@@ -55,6 +57,7 @@ def masked_photodiodes(
     return UnevenPreset(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector=detector,
         mask=mask,
         observation=Observation.CURRENTS,
@@ -167,19 +170,20 @@ def noises(sensor: Masked) -> dict[str, Condition]:
 
 def temperatures(sensor: Masked) -> dict[str, Condition]:
     """Return hot and cold."""
+    said = "The nominal sensor at -40 deg C: no dark current"
     return {
-        "hot": hot(sensor),
-        "cold": Condition(
-            "The nominal sensor at -40 deg C: no dark current.", at(sensor, -40.0), LIGHT
-        ),
+        **hot(sensor),
+        **since_calibration("cold", said, at(sensor, -40.0), sensor, LIGHT),
     }
 
 
-def hot(sensor: Masked, also: str = "") -> Condition:
-    """Return the condition of 80 deg C, with what else there is to say of it."""
-    return Condition(
-        f"The nominal sensor at 80 deg C: dark current doubles every 7 K{also}.",
+def hot(sensor: Masked, also: str = "") -> dict[str, Condition]:
+    """Return the conditions of 80 deg C, with what else there is to say of them."""
+    return since_calibration(
+        "hot",
+        f"The nominal sensor at 80 deg C: dark current doubles every 7 K{also}",
         at(sensor, 80.0),
+        sensor,
         LIGHT,
     )
 

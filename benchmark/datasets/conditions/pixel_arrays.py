@@ -11,6 +11,7 @@ from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets.conditions.alignment import MISALIGNED, careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
+from benchmark.datasets.conditions.since_calibration import since_calibration
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.light.environment import Irradiance
@@ -51,6 +52,7 @@ def windows(
     *,
     name: str,
     version: int,
+    drawn_as: int | None = None,
     detector: str,
     mask: str,
     sensor: DiffractiveFrameSensor,
@@ -71,6 +73,7 @@ def windows(
     return kind(
         name=name,
         version=version,
+        drawn_as=drawn_as,
         detector=detector,
         mask=mask,
         observation=Observation.FRAMES,
@@ -188,7 +191,8 @@ def pixel_conditions(
 
     Low noise is ten times the electrons at 12 bits; high noise a fifth of them with five times
     the read noise and the offset raised, so that noise is not clipped; misaligned is far above
-    the noise; hot is 80 deg C; aged is the end of life. Two of them say in a dataset's own words
+    the noise; hot is 80 deg C; aged is the end of life; of the last two there are the conditions
+    of `since_calibration`. Two of them say in a dataset's own words
     what else is so of the careful assembly, and how far its mask is off centre where it is
     misaligned.
     """
@@ -235,19 +239,23 @@ def pixel_conditions(
             replace(sensor, camera=replace(camera, assembly=errors)),
             light,
         ),
-        "hot": Condition(
-            "The nominal sensor at 80 deg C: dark current doubles every 7 K.",
+        **since_calibration(
+            "hot",
+            "The nominal sensor at 80 deg C: dark current doubles every 7 K",
             replace(
                 sensor,
                 detector=replace(detector, dark=replace(detector.dark, temperature_c=80.0)),
             ),
+            sensor,
             light,
         ),
-        "aged": Condition(
-            "The nominal sensor at the end of its life (some 5e9 protons/cm2), also calibrated "
-            f"then: {_AGED_DARK:g} times the dark current, and one pixel in a hundred hot, with "
-            f"{_AGED_HOT['hot_factor']:g} times as much again on average.",
+        **since_calibration(
+            "aged",
+            "The nominal sensor at the end of its life (some 5e9 protons/cm2): "
+            f"{_AGED_DARK:g} times the dark current, and one pixel in a hundred hot, with "
+            f"{_AGED_HOT['hot_factor']:g} times as much again on average",
             replace(sensor, detector=aged(detector)),
+            sensor,
             light,
         ),
     }

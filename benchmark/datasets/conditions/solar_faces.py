@@ -7,6 +7,7 @@ from functools import partial
 
 from benchmark.datasets.conditions.faces import albedo, noises
 from benchmark.datasets.conditions.propagation import LIGHT
+from benchmark.datasets.conditions.since_calibration import since_calibration
 from benchmark.datasets.preset import Condition
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.sensors.face_layouts import Normals
@@ -65,6 +66,7 @@ def solar_conditions(sensor: SolarCellSensor, body: str = "sphere") -> dict[str,
     words = _PANELS if cells.in_series > 1 else _CELLS
     what = words.what
     seen = partial(Condition, irradiance=LIGHT)
+    later = partial(since_calibration, new=sensor, light=LIGHT)
     return {
         "nominal": seen(
             f"{words.new}, 40 K warmer in full sunlight than in the dark; Kelly response, noise of "
@@ -77,16 +79,19 @@ def solar_conditions(sensor: SolarCellSensor, body: str = "sphere") -> dict[str,
             f"The nominal {what} mounted 2 deg off {off} normals.",
             replace(sensor, normal_error_deg=2.0),
         ),
-        "hot": seen(
-            f"The nominal {what} 55 K warmer: currents 3.3 % higher.",
+        **later(
+            "hot",
+            f"The nominal {what} 55 K warmer: currents 3.3 % higher",
             replace(sensor, cells=replace(cells, temperature_c=80.0)),
         ),
-        "cold": seen(
-            f"The nominal {what} 85 K colder: currents 5.1 % lower.",
+        **later(
+            "cold",
+            f"The nominal {what} 85 K colder: currents 5.1 % lower",
             replace(sensor, cells=replace(cells, temperature_c=-60.0)),
         ),
-        "aged": seen(
-            f"The nominal {what} after years in orbit: {words.aged}.",
+        **later(
+            "aged",
+            f"The nominal {what} after years in orbit: {words.aged}",
             replace(sensor, cells=replace(cells, loss=0.2, loss_spread=0.05)),
         ),
         "albedo": albedo(sensor, what),

@@ -20,7 +20,8 @@ _CAMERA = LensCamera(
 
 PRESET = lens_camera(
     name="ccd-lens",
-    version=2,
+    version=3,
+    drawn_as=2,
     detector="CCD",
     camera=_CAMERA,
     half_fov_deg=20.0,

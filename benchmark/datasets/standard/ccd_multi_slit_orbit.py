@@ -11,7 +11,8 @@ _GROUND = under_a_filter(ccd_multi_slit.PRESET, 60.0)
 
 PRESET = in_orbit(
     name="ccd-multi-slit-orbit",
-    version=1,
+    version=2,
+    drawn_as=1,
     ground=_GROUND,
     setups=lines_aloft(_GROUND, SPACER),
     attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),

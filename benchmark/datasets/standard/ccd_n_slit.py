@@ -10,7 +10,8 @@ _MASK = n_slit(4.0, 45.0, width_mm=0.1, length_mm=7.2, thickness_mm=0.0)
 
 PRESET = line_arrays(
     name="ccd-n-slit",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="CCD",
     mask="N-Slit",
     sensor=behind(_MASK, 1.8, ccd(2048, 0.014), axes=("y",), sun=SUN, glass=GLASS),

@@ -10,8 +10,8 @@ _GROUND = ccd_single_aperture.PRESET
 
 PRESET = in_orbit(
     name="ccd-orbit",
-    version=6,
-    drawn_as=5,  # the context has a gyroscope since; the rest is as it was
+    version=7,
+    drawn_as=5,  # what changed since drew nothing anew
     ground=_GROUND,
     setups=frames_aloft(_GROUND, SPACER),
     attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),

@@ -12,7 +12,8 @@ _SENSOR = behind(_MASK, 1.8, ccd(1024, 0.014), sun=SUN)
 
 PRESET = line_arrays(
     name="ccd-periodic",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="CCD",
     mask="Multi-Slit",
     sensor=_SENSOR,

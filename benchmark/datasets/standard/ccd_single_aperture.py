@@ -13,7 +13,8 @@ _SENSOR = pixels.window(_MASK, 2.0, pixels.ccd(512, 0.013, prnu=0.005))
 
 PRESET = pixels.windows(
     name="ccd-single-aperture",
-    version=4,
+    version=5,
+    drawn_as=4,
     detector="CCD",
     mask="Single-Ap.",
     sensor=_SENSOR,

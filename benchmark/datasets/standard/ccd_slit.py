@@ -10,7 +10,8 @@ _SENSOR = behind(_MASK, 3.5, ccd(1024, 0.014), sun=SUN)
 
 PRESET = line_arrays(
     name="ccd-slit",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="CCD",
     mask="Slit",
     sensor=_SENSOR,

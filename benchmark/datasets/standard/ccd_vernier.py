@@ -9,7 +9,8 @@ _RULER = periodic(16, 0.32, width_mm=0.15, length_mm=5.8, thickness_mm=0.01)
 
 PRESET = line_arrays(
     name="ccd-vernier",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="CCD",
     mask="Encoded",
     sensor=behind(without(_RULER, (2, 11)), 1.0, ccd(104, 0.1), fill_factor=0.9),

@@ -19,7 +19,8 @@ _MASK = compound_eye(
 
 PRESET = many_spots(
     name="cmos-compound-eye",
-    version=5,
+    version=6,
+    drawn_as=5,
     detector="CMOS",
     mask="Encoded",
     # light gathers behind such holes to 1.9 times the open light: a shorter exposure

@@ -14,7 +14,8 @@ _MASK = spacing_coded(
 
 PRESET = many_spots(
     name="cmos-encoded",
-    version=5,
+    version=6,
+    drawn_as=5,
     detector="CMOS",
     mask="Encoded",
     # light gathers behind such holes to 1.9 times the open light: a shorter exposure

@@ -14,7 +14,8 @@ _MASK = spacing_and_size_coded(13, **_GROUP, **_PLACES, thickness_mm=0.01)
 
 PRESET = many_spots(
     name="cmos-encoded-sizes",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="CMOS",
     mask="Encoded",
     # light gathers behind such holes to about twice the open light: a shorter exposure

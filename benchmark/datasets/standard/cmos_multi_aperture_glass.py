@@ -17,7 +17,8 @@ _SENSOR = replace(_OPEN, camera=replace(_OPEN.camera, glass=GLASS))
 
 PRESET = many_spots(
     name="cmos-multi-aperture-glass",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="CMOS",
     mask="Multi-Ap.",
     sensor=_SENSOR,

@@ -10,7 +10,8 @@ _MASK = n_slit(3.0, 45.0, width_mm=0.1, length_mm=6.4, thickness_mm=0.0)
 
 PRESET = line_arrays(
     name="cmos-n-slit",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="CMOS",
     mask="N-Slit",
     sensor=behind(_MASK, 1.2, active_pixels(2048, 0.008), axes=("y",), sun=SUN, glass=GLASS),

@@ -12,7 +12,8 @@ _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixe
 
 PRESET = pixels.windows(
     name="cmos-single-aperture",
-    version=4,
+    version=5,
+    drawn_as=4,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,

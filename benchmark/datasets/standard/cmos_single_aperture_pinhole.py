@@ -13,7 +13,8 @@ _LIGHT = Irradiance(stray=2e-5, stray_spread=4e-6)
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-pinhole",
-    version=4,
+    version=5,
+    drawn_as=4,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,

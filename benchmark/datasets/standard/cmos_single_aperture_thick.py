@@ -13,7 +13,8 @@ _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixe
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-thick",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,

@@ -21,7 +21,8 @@ _LINES = ((-_CORNER_MM, 0.0, _WIDTH_MM),)
 
 PRESET = event_array(
     name="event-l-slit",
-    version=4,
+    version=5,
+    drawn_as=4,
     mask="L-Slit",
     sensor=_SENSOR,
     geometry=design(_SENSOR, 40.0, line_axes=("x", "y"), slits=_LINES),

@@ -10,7 +10,8 @@ _SENSOR = behind(hole(0.1, 0.01), 0.6, events=20, pitch_mm=0.025)
 
 PRESET = event_array(
     name="event-single-aperture",
-    version=4,
+    version=5,
+    drawn_as=4,
     mask="Single-Ap.",
     sensor=_SENSOR,
     geometry=design(_SENSOR, 50.0, aperture_width_mm=0.1, aperture_shape="round"),

@@ -20,7 +20,8 @@ _COUNTER = FrequencyCounter(
 
 PRESET = faces(
     name="ltf-maskless-cube",
-    version=2,
+    version=3,
+    drawn_as=2,
     detector="LTF",
     normals=CUBE,
     order=OF_THE_CUBE,

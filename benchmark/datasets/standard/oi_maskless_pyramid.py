@@ -17,7 +17,8 @@ _SENSOR = OptoIsolatorSensor(QUADRANTS, _READOUT, normal_error_deg=1.0)
 
 PRESET = faces(
     name="oi-maskless-pyramid",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="OI",
     normals=QUADRANTS,
     order=TOWARDS_QUADRANTS,

@@ -12,7 +12,8 @@ from benchmark.simulator.flight.attitude import Tumble
 _GROUND = replace(qpd_maskless_pyramid.PRESET, detector="PD")
 _FLOWN = in_orbit(
     name="pd-albedo-orbit",
-    version=1,
+    version=2,
+    drawn_as=1,
     ground=_GROUND,
     setups=photodiodes_aloft(_GROUND, PHOTODIODES),
     attitude=Tumble(24.0, nutation_deg=24.0, precession_deg_s=0.2531, inertia_ratio=0.75),

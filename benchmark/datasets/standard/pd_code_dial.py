@@ -19,7 +19,8 @@ _READOUT = amplifiers(sunlit_ua=10.0, noise_ua=0.005, full_scale_ua=12.0)
 
 PRESET = code_dial(
     name="pd-code-dial",
-    version=3,
+    version=4,
+    drawn_as=3,
     units=(
         "microamperes, float64 (N, 18): of the dial along x five coarse tracks (Gray code, most "
         "significant bit first) and the fine rows F1 to F4, then the same of the dial along y"

@@ -10,7 +10,8 @@ _NORMALS = pyramid(6, 30.0)
 
 PRESET = faces(
     name="pd-maskless-pyramid",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="PD",
     normals=_NORMALS,
     order="faces at azimuths 0, 60, ..., 300 deg from +x to +y",

@@ -10,8 +10,8 @@ _GROUND = pd_maskless_cube.PRESET
 
 PRESET = in_orbit(
     name="pd-orbit",
-    version=3,
-    drawn_as=2,  # the context has a gyroscope since; the rest is as it was
+    version=4,
+    drawn_as=2,  # what changed since drew nothing anew
     ground=_GROUND,
     setups=photodiodes_aloft(_GROUND, PHOTODIODES),
     attitude=Tumble(90.0, nutation_deg=75.0, precession_deg_s=0.2531, inertia_ratio=0.4),

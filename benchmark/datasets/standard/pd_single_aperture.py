@@ -18,7 +18,8 @@ _OFF = "12 um of glue, window 20 and -15 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-single-aperture",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="PD",
     mask="Single-Ap.",
     readings=f"photodiodes {diodes.QUADRANTS}",

@@ -10,7 +10,8 @@ _MASK = slit_row(_PLACES_MM, width_mm=0.2, length_mm=4.6, thickness_mm=0.05)
 
 PRESET = line_arrays(
     name="pda-multi-slit",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="PDA",
     mask="Multi-Slit",
     sensor=behind(_MASK, 1.2, photodiode_array(144, 0.05, bits=8), fill_factor=0.9),

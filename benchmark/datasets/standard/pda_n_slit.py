@@ -9,7 +9,8 @@ _MASK = n_slit(2.2, 45.0, width_mm=0.2, length_mm=5.0, thickness_mm=0.01)
 
 PRESET = line_arrays(
     name="pda-n-slit",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="PDA",
     mask="N-Slit",
     sensor=behind(_MASK, 1.3, photodiode_array(256, 0.05), axes=("y",), fill_factor=0.9),

@@ -9,7 +9,8 @@ _MASK = slit_row((0.0,), width_mm=0.2, length_mm=11.6, thickness_mm=0.02)
 
 PRESET = line_arrays(
     name="pda-slit",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="PDA",
     mask="Slit",
     sensor=behind(_MASK, 2.5, photodiode_array(256, 0.05), pixel_height_mm=0.5, fill_factor=0.9),

@@ -9,7 +9,8 @@ from benchmark.simulator.sensors.faces import CUBE
 
 PRESET = faces(
     name="pva-maskless-panels",
-    version=2,
+    version=3,
+    drawn_as=2,
     detector="PVA",
     normals=CUBE,
     order="panels +x, -x, +y, -y, +z, -z",

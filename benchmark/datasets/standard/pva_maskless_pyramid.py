@@ -8,7 +8,8 @@ from benchmark.datasets.conditions.solar_faces import cells_on, solar_conditions
 
 PRESET = faces(
     name="pva-maskless-pyramid",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="PVA",
     normals=QUADRANTS,
     order=TOWARDS_QUADRANTS,

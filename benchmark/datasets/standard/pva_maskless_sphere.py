@@ -11,7 +11,8 @@ _NORMALS = sphere(16)
 
 PRESET = faces(
     name="pva-maskless-sphere",
-    version=2,
+    version=3,
+    drawn_as=2,
     detector="PVA",
     normals=_NORMALS,
     order="cells on a Fibonacci lattice from +z to -z (geometry.face_normals)",

@@ -14,7 +14,8 @@ _CELLS = PhotodiodeDrift(
 
 PRESET = in_orbit(
     name="pva-orbit",
-    version=1,
+    version=2,
+    drawn_as=1,
     ground=_GROUND,
     setups=photodiodes_aloft(_GROUND, _CELLS, "cells"),
     attitude=Tumble(90.0, nutation_deg=75.0, precession_deg_s=0.2531, inertia_ratio=0.4),

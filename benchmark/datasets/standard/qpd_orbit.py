@@ -11,7 +11,8 @@ _GROUND = qpd_single_aperture.PRESET
 
 PRESET = in_orbit(
     name="qpd-orbit",
-    version=1,
+    version=2,
+    drawn_as=1,
     ground=_GROUND,
     setups=quadrants_aloft(_GROUND, SPACER, PHOTODIODES),
     attitude=Tumble(18.0, nutation_deg=18.0, precession_deg_s=0.2531, inertia_ratio=0.75),

@@ -21,7 +21,8 @@ _SETUPS = pixels.pixel_conditions(_SENSOR)
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-micro-dss",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="CMOS",
     mask="Single-Ap.",
     sensor=_SENSOR,

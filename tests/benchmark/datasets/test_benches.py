@@ -9,6 +9,7 @@ from benchmark.datasets.controls import board_facts, oracle
 from benchmark.datasets.corrected import (
     correct,
     correction,
+    corrections,
     reference_condition,
 )
 from benchmark.metrics.separation import separation_deg
@@ -59,12 +60,26 @@ def test_the_controls_are_the_bound_s_noise_and_the_angle_off_boresight(slit):
     np.testing.assert_allclose(np.linalg.norm(answers, axis=1), 1.0)
 
 
-def test_a_condition_that_changes_light_alone_shares_the_nominal_references(slit):
-    assert [reference_condition(slit, name) for name in ("albedo", "misaligned", "hot")] == [
-        "nominal",
-        "nominal",
-        "hot",
+def test_a_sensor_that_was_calibrated_as_nominal_shares_the_nominal_references(slit):
+    names = ("albedo", "misaligned", "hot", "hot-renewed", "hot-recalibrated")
+    assert [reference_condition(slit, name) for name in names] == [
+        *("nominal" for _ in range(4)),
+        "hot-recalibrated",
     ]
+
+
+def test_renewed_references_take_away_what_warmth_brings(slit):
+    """Without them a hot detector's dark signal stays in what is corrected."""
+    left = {}
+    for name in ("hot", "hot-renewed"):
+        by = corrections(slit, name)
+        assert by["calibration"] is not None
+        samples = slit.generate(name, "test", 20)
+        left[name] = np.median(correct(by["test"], samples).observations)
+    hot = slit.setups["hot"].sensor.detector
+    grown = hot.dark.level() - slit.setups["nominal"].sensor.detector.dark.level()
+    assert left["hot"] == pytest.approx(grown * hot.exposure_s / hot.gain_e_per_dn, rel=0.05)
+    assert abs(left["hot-renewed"]) < 0.02 * left["hot"]
 
 
 def test_correction_takes_away_the_pattern_that_units_differ_by(slit):
@@ -72,9 +87,9 @@ def test_correction_takes_away_the_pattern_that_units_differ_by(slit):
     raw, ready = [], []
     for number in (1, 2):
         unit = slit.for_unit(number)
-        samples = unit.generate("hot", "test", 20)
+        samples = unit.generate("hot-recalibrated", "test", 20)
         raw.append(np.asarray(samples.observations, dtype=float))
-        ready.append(correct(correction(unit, "hot"), samples).observations)
+        ready.append(correct(correction(unit, "hot-recalibrated"), samples).observations)
     # most pixels are in the dark: over the samples each reads its own dark signal
     size = [np.median(np.abs(np.median(one - two, axis=0))) for one, two in (raw, ready)]
     assert size[1] < 0.5 * size[0]

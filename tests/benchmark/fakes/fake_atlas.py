@@ -60,6 +60,11 @@ class FakeSetup:
 
     bench: Any = None
     sensor: Any = None
+    renewed: bool = False
+    mission: Any = None
+
+    def referred(self, split: str = "calibration") -> Any:
+        return self.sensor
 
 
 @dataclass(frozen=True)
@@ -163,7 +168,7 @@ class Diodes:
     def condition(self, name: str) -> FakeSetup:
         return FakeSetup()
 
-    def references(self, condition: str) -> dict[str, Any]:
+    def references(self, condition: str, split: str = "calibration") -> dict[str, Any]:
         return {}
 
     def reference_error_deg(self, condition: str) -> float:

@@ -11,11 +11,10 @@ What the calibration says of directions is wrong by far more, and may not be use
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import numpy as np
-from fake_atlas import CURRENTS, FakeBound, FakeSamples
+from fake_atlas import CURRENTS, FakeBound, FakeSamples, FakeSetup
 
 from algorithms.contract import (
     AboutModel,
@@ -70,9 +69,9 @@ class Plane:
         return {"version": self.version, "poses": self.poses, "unit": self.unit}
 
     def condition(self, name: str) -> Any:
-        return SimpleNamespace(sensor=None, bench=None)
+        return FakeSetup()
 
-    def references(self, condition: str) -> dict[str, Any]:
+    def references(self, condition: str, split: str = "calibration") -> dict[str, Any]:
         return {}
 
     def generate(self, condition: str, split: str, n: int | None = None) -> FakeSamples:

@@ -23,11 +23,13 @@ BY = ReferenceCorrection(np.array([1.0, 2.0, 3.0, 4.0]), np.array([11.0, 32.0, 1
 READ = np.arange(40.0).reshape(10, 4) + 20.0
 
 
-def read(correction: ReferenceCorrection | None = None) -> ConditionData:
+def read(by: ReferenceCorrection | None = None) -> ConditionData:
     splits: Any = {"test": FakeSamples(READ.copy(), np.zeros((10, 3)))}
     seen = np.ones(10, dtype=np.bool_)
     preset: Any = Diodes()
-    return ConditionData(preset, splits, None, None, seen, (), correction=correction)
+    return ConditionData(
+        preset, splits, None, None, seen, (), corrections={"test": by} if by else {}
+    )
 
 
 @dataclass(frozen=True)
@@ -58,10 +60,10 @@ def test_readings_are_corrected_at_once_where_memory_allows(
 ) -> None:
     monkeypatch.setattr(readings, "_CORRECTED_BYTES", limit)
     preset: Any = Diodes()
-    data = readings.correct_readings(RenderedData(read(), BY), preset)
+    data = readings.correct_readings(RenderedData(read(), {"test": BY}), preset)
     observations = np.asarray(data.splits["test"].observations)
     np.testing.assert_array_equal(observations, READ if later else BY.correct(READ))
-    assert data.correction is (BY if later else None)
+    assert data.corrections == ({"test": BY} if later else {})
     assert not observations.flags.writeable
 
 
