@@ -14,6 +14,9 @@ SPLITS = ("calibration", "test", "repeat")
 #: benches give, in turn. No preset has a condition of this name.
 ON_BENCH = "on-bench"
 
+#: The condition of a sensor that is calibrated on the ground once, and flown.
+FLIGHT = "flight"
+
 
 @dataclass(frozen=True, order=True)
 class Cell:

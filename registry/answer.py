@@ -81,11 +81,17 @@ class RankedArchitecture:
 
 
 class Answer:
-    """Architectures that meet a question, best first in the order of `sort`."""
+    """Architectures that meet a question, best first in the order of `sort`.
 
-    def __init__(self, question: Question, sort: Sort) -> None:
+    `on_the_ground` is the same question put to own errors, where it is not `question` itself.
+    """
+
+    def __init__(
+        self, question: Question, sort: Sort, on_the_ground: Question | None = None
+    ) -> None:
         self.question = question
         self.sort = sort
+        self.on_the_ground = on_the_ground or question
 
     @cached_property
     def architectures(self) -> tuple[RankedArchitecture, ...]:

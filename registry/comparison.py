@@ -59,7 +59,10 @@ class Contradiction:
 
 
 def contradictions(answer: Answer) -> list[Contradiction]:
-    """Return the first few contradictions of an answer, in the order of its architectures."""
+    """Return the first few contradictions of an answer, in the order of its architectures.
+
+    By own errors: what methods make of the same readings.
+    """
     found: list[Contradiction] = []
     for one in answer.architectures:
         if "measured" in one.meets:
@@ -70,8 +73,9 @@ def contradictions(answer: Answer) -> list[Contradiction]:
 
 
 def _of(answer: Answer, one: RankedArchitecture) -> Iterator[Contradiction]:
-    question, table = answer.question, answer.question.table
-    rows = np.flatnonzero(question.measured & (table.row_place == one.number)).tolist()
+    question, table = answer.on_the_ground, answer.on_the_ground.table
+    here = [place.architecture == one.place.architecture for place in table.places]
+    rows = np.flatnonzero(question.measured & np.array(here)[table.row_place]).tolist()
     designs = {row: table.designs[int(table.row_design[row])] for row in rows}
     used = [row for row in rows if designs[row].users]
     advised = [row for row in rows if designs[row].advice]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 
-from registry.requirements import UNITS
+from registry.requirements import UNITS, Level
 
 _NUMBERS = ("rms_deg", "bound_deg", "repeatability_deg", "availability")
 
@@ -85,6 +86,11 @@ class MeasuredPipeline:
         Time of one sample on the machine of the published times; None where not timed.
     needs
         Inputs beside the sensor that the calibration reads (`registry.requirements.NEEDS`).
+    flight, flight_units_deg, flight_ratios
+        In flight: what `nominal`, `unit_own_error_deg` and `unit_ratios` are on the ground; None
+        for a pipeline that was not flown.
+    own
+        Of a pipeline in flight (`flown`), the same on the ground; None on the ground.
     """
 
     dataset: str
@@ -102,6 +108,23 @@ class MeasuredPipeline:
     unit_ratios: tuple[float, ...] = (1.0,) * UNITS
     bench_deg: float = 0.0
     needs: tuple[str, ...] = ()
+    flight: Score | None = None
+    flight_units_deg: tuple[float, ...] = ()
+    flight_ratios: tuple[float, ...] = (1.0,) * UNITS
+    own: MeasuredPipeline | None = field(default=None, hash=False, repr=False)
+
+    @property
+    def flown(self) -> MeasuredPipeline | None:
+        """The same in flight, ``nominal`` the score there; None where it was not flown."""
+        if self.flight is None:
+            return None
+        return replace(
+            self,
+            nominal=self.flight,
+            unit_own_error_deg=self.flight_units_deg,
+            unit_ratios=self.flight_ratios,
+            own=self,
+        )
 
     def judge(
         self, hazards: Iterable[str] = (), half_field_deg: float | None = None
@@ -166,3 +189,12 @@ class Measurements:
         self.by_architecture: Mapping[tuple[str, str], tuple[MeasuredPipeline, ...]] = (
             MappingProxyType({pair: tuple(found) for pair, found in by.items()})
         )
+
+    def at(self, level: Level) -> Measurements:
+        """Return what was measured at a level; where nothing was flown, what was on the ground."""
+        return self if level == "own" or not self._flown.rows else self._flown
+
+    @cached_property
+    def _flown(self) -> Measurements:
+        flown = (row.flown for row in self.rows)
+        return Measurements(row for row in flown if row is not None)

@@ -55,4 +55,6 @@ def recommend(
     else:
         asked = Requirements.parse(requirements or {}, known.taxonomy, known.properties)
     rows = measured if isinstance(measured, Measurements) else Measurements(measured)
-    return Answer(Question(design_table(known, rows), asked), sort)
+    judged, own = rows.at(asked.judged_level), rows.at("own")
+    question = Question(design_table(known, judged), asked)
+    return Answer(question, sort, Question(design_table(known, own), asked))

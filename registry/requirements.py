@@ -36,6 +36,11 @@ OF_STUDIES = ("task", "error")
 EVIDENCE = ("any", "reported", "measured", "both")
 Evidence = Literal["any", "reported", "measured", "both"]
 
+LEVELS = ("flight", "own")
+Level = Literal["flight", "own"]
+"""Errors that limits are judged by: of a sensor that was calibrated on the ground once and flown,
+or its own, of true directions in the calibration and nothing that changed since."""
+
 SETTINGS: Mapping[str, str] = MappingProxyType(
     {
         "bench_deg": "a number of degrees, 0 or more",
@@ -43,11 +48,13 @@ SETTINGS: Mapping[str, str] = MappingProxyType(
         "sun_distance_au": "a number of astronomical units from 0.05 to 100",
         "processor": "a processor's name, or a positive number",
         "evidence": f"one of {', '.join(EVIDENCE)}",
+        "level": f"one of {', '.join(LEVELS)}",
     }
 )
 """How requirements are judged: error of the calibration bench (none stated: the answer says which
 bench it takes), share of units and benches that must meet a limit, distance from the Sun, time
-relative to the machine of the published times, and which evidence must meet all requirements."""
+relative to the machine of the published times, which evidence must meet all requirements, and which
+level of error is judged (`LEVELS`, the first by default)."""
 
 CONFIDENCE = 0.9
 """Default share of units and benches that must meet a limit."""
@@ -200,6 +207,7 @@ class Requirements:
     sun_distance_au: float | None = None
     processor: str | float | None = None
     evidence: Evidence | None = None
+    level: Level | None = None
     mission: str | None = None
 
     @classmethod
@@ -249,15 +257,17 @@ class Requirements:
         for name in (*LIMITS, *_RANGES):
             if getattr(self, name) is not None:
                 _require_number(name, getattr(self, name))
-        lists = (("tolerate", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS))
-        for name, known in lists:
-            for value in getattr(self, name):
+        named: tuple[tuple[str, Collection[str]], ...] = (
+            *(("tolerate", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS)),
+            *(("evidence", EVIDENCE), ("level", LEVELS)),
+        )
+        for name, known in named:
+            stated = getattr(self, name) or ()
+            for value in (stated,) if isinstance(stated, str) else stated:
                 if value not in known:
                     raise unknown_name(name, value, known)
         if not is_processor(self.processor):
             raise unknown_name("processor", self.processor, processors())
-        if self.evidence not in (None, *EVIDENCE):
-            raise unknown_name("evidence", self.evidence, EVIDENCE)
 
     @property
     def largest_deg(self) -> float | None:
@@ -266,6 +276,11 @@ class Requirements:
         limits = [x for x in (self.max_error_deg, max(classes, default=None)) if x is not None]
         least = min(limits, default=math.inf)
         return least if math.isfinite(least) else None
+
+    @property
+    def judged_level(self) -> Level:
+        """Level of error that is judged."""
+        return self.level or "flight"
 
     @property
     def share(self) -> float:

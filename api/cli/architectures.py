@@ -11,7 +11,7 @@ from registry.comparison import labels
 
 _NARROW = 30
 _LABEL = 13  # columns before the text of a labelled paragraph
-_HEADINGS = ("", "calibration", "survey labels", "advised", "studies", "own error, deg")
+_HEADINGS = ("", "calibration", "survey labels", "advised", "studies", "in flight, deg", "own, deg")
 _INDENT = "    "
 _NEVER_BUILT = "Measured here, never built"
 
@@ -88,7 +88,7 @@ def _architecture(one: Architecture, width: int) -> Iterator[str]:
 
 def _calibration(rank: int, one: Calibration) -> dict[str, str]:
     found = one.measured
-    own = "not measured"
+    flight, own = "not flown", "not measured"
     if found is not None:
         over = "" if found.field_deg in {None, 360.0} else f" over {found.field_deg:g}"
         own = (
@@ -96,12 +96,15 @@ def _calibration(rank: int, one: Calibration) -> dict[str, str]:
             if found.own_error_deg is None
             else f"{found.own_error_deg:.3g}{over}"
         )
+        if found.flight_error_deg is not None:
+            flight = f"{found.flight_error_deg:.3g}{over}"
     cells = (
         str(rank),
         one.name,
         labels(one.extractor, (*one.compensations, one.model)) or "not in the survey",
         "yes" if one.advised else "no",
         str(len(one.studies)) if one.studies else "none",
+        flight,
         own,
     )
     return dict(zip(_HEADINGS, cells, strict=True))

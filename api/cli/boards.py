@@ -13,8 +13,8 @@ from benchmark.metrics.score import AVAILABLE
 Row = Mapping[str, Any]
 
 WIDTH = 80
-_HEADINGS = ("architecture", "best pipeline", "deg", "", "±", "bounds", "bench")
-_NUMBERS = frozenset({"deg", "bounds", "±", "bench", "median", *map("{:g}".format, WITHIN)})
+_HEADINGS = ("architecture", "best pipeline", "flight", "own", "", "bounds", "bench")
+_NUMBERS = frozenset({"flight", "own", "bounds", "bench", "median", *map("{:g}".format, WITHIN)})
 _MORE = (
     "More: --dataset NAME (all pipelines), --each (every data set), --overview (parts), --format "
     "json (all numbers)."
@@ -28,9 +28,10 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
     lines = [
         *prose(
             "The best pipeline of each architecture (detector, mask) under nominal conditions, by "
-            "own error, deg. ±: standard error. bounds: RMS of unit 0 over the Cramer-Rao bound "
-            "with the unit known. "
-            "bench: error on the standard bench, deg. =: tie with the runner-up in a paired test. "
+            "own error. flight: error of the same, calibrated on the ground once and flown, deg. "
+            "own: own error, deg. bounds: RMS of unit 0 over the Cramer-Rao bound with the unit "
+            "known. bench: error on the standard bench, deg. =: tie with the runner-up in a paired "
+            "test. "
             f"{tally(rows)}",
             room,
         ),
@@ -64,14 +65,14 @@ def _architecture(row: Row) -> tuple[str, ...]:
     """Return the cells of an architecture, in the order of `_HEADINGS`."""
     name = f"{row['detector']} {row['mask']}"
     if row["extractor"] is None:
-        return (name, "none has an error", "-", "", "-", "", "-")
+        return (name, "none has an error", "-", "-", "", "-", "-")
     pipeline = f"{row['extractor']} + {row['model']}"
     return (
         name,
         pipeline,
+        digits(row["flight_error_deg"]),
         digits(row["own_error_deg"]),
         "=" if row["tie"] else "",
-        _percent(row["own_se"]),
         _ratio(row["over_bound"]),
         digits(row["on_bench_deg"]),
     )
@@ -87,9 +88,9 @@ def _line_of(cells: Sequence[str]) -> Iterator[str]:
 
 
 def _line(*cells: str) -> str:
-    name, pipeline, error, tie, answered, ratio, bench = cells
+    name, pipeline, flight, own, tie, ratio, bench = cells
     wide, wider = _ARCHITECTURE
-    numbers = f"{error:>8}{tie:1} {answered:>4} {ratio:>6} {bench:>7}"
+    numbers = f"{flight:>7} {own:>8}{tie:1} {ratio:>6} {bench:>6}"
     return f"{name:<{wide}}{pipeline:<{wider}}{numbers}".rstrip()
 
 
@@ -97,14 +98,6 @@ def _ratio(value: float | None) -> str:
     if value is None:
         return "-"
     return digits(value) if value < 1e5 else f"{value:.0e}".replace("+0", "")
-
-
-def _percent(error: float | None) -> str:
-    """Spell a relative standard error."""
-    if error is None:
-        return ""
-    share = round(100 * error)
-    return f"{share or '<1'}%" if share < 100 else ">99%"
 
 
 def _several(rows: Sequence[Row]) -> str:

@@ -46,6 +46,11 @@ class BestOfArchitecture(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used this pipeline on the architecture.")
+    flight_error_deg: float | None = Field(
+        description="Error in flight: geometric mean over sensor units; null if not flown."
+    )
+    flight_low_deg: float | None = Field(description="Smallest error in flight of a unit.")
+    flight_high_deg: float | None = Field(description="Largest error in flight of a unit.")
     own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_se: float | None = Field(description="Relative standard error of the own error.")
     quoted_deg: float | None = Field(description="Error on odd units of the best on even units.")

@@ -39,6 +39,11 @@ class Measured(Shape):
     model: str
     condition: str = Field(description="Condition with the largest error.")
     field_deg: float | None = Field(description="Full field of view of the error.")
+    flight_error_deg: float | None = Field(
+        description="Error in flight: geometric mean over sensor units; null if not flown."
+    )
+    flight_low_deg: float | None = Field(description="Error in flight less two standard errors.")
+    flight_high_deg: float | None = Field(description="Error in flight plus two standard errors.")
     own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_low_deg: float | None = Field(description="Own error less two standard errors.")
     own_high_deg: float | None = Field(description="Own error plus two standard errors.")
@@ -215,6 +220,7 @@ class Recommendations(Shape):
     """Architectures for a set of requirements, with the evidence behind each."""
 
     requirements: dict[str, Any] = Field(description="Requirements as interpreted.")
+    level: Literal["flight", "own"] = Field(description="Level of error that limits are judged by.")
     sort: str = Field(description="Order of the list.")
     order: str = Field(description="The order in one sentence.")
     count: int = Field(description="Number of architectures that meet the requirements.")

@@ -19,7 +19,7 @@ from api.schema.parameters import (
     several,
 )
 from registry.ranking import Sort
-from registry.requirements import EVIDENCE, MISSIONS
+from registry.requirements import EVIDENCE, LEVELS, MISSIONS
 from survey_data.processors import form, processors
 
 INCLUDE = ("calibrations", "paths", "designs")
@@ -128,6 +128,13 @@ class Requirements(OfEdition):
     )
     evidence: Annotated[str | None, OneOf(lambda: EVIDENCE), GIVEN] = Field(
         None, description="Evidence that must meet all requirements; default any of the two kinds."
+    )
+    level: Annotated[str | None, OneOf(lambda: LEVELS), GIVEN] = Field(
+        None,
+        description=(
+            "Error that limits are judged by: flight (calibrated on the ground once, then flown), "
+            "the default, or own (what sensor and method achieve)."
+        ),
     )
     sort: Sort = Field(
         "evidence",

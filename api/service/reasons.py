@@ -49,14 +49,19 @@ def _lacks(answer: Answer, one: RankedArchitecture, kind: int) -> str:
 
 
 def _measured_words(answer: Answer, best: Calibration, *, meets: bool) -> str:
-    pipeline, own, asked = best.pipeline, best.own, answer.question.requirements
+    pipeline, asked = best.pipeline, answer.question.requirements
+    own, judged = best.own, best.judged
     assert pipeline is not None  # noqa: S101 - the caller has looked
     name = f"{pipeline.extractor} + {pipeline.model}"
-    if own is None or best.interval_deg is None:
+    if own is None or judged is None or not math.isfinite(judged.error_deg):
         return f"{name} on {pipeline.dataset} answers too seldom, or not over this field"
-    over = "" if own.field_deg in {None, 360.0} else f" over {own.field_deg:g} deg"
-    said = f"{name} has an own error of {own.error_deg:.3g} deg{over} ({pipeline.dataset}, "
-    said += f"{own.condition})"
+    over = "" if judged.field_deg in {None, 360.0} else f" over {judged.field_deg:g} deg"
+    where = f"({pipeline.dataset}, {judged.condition})"
+    said = f"{name} has an own error of {own.error_deg:.3g} deg{over} {where}"
+    if pipeline.own is not None:
+        said = f"{name} errs by {judged.error_deg:.3g} deg in flight{over} {where}"
+        if math.isfinite(own.error_deg):
+            said += f", its own error is {own.error_deg:.3g} deg"
     if asked.bench_deg is not None and best.judged_deg is not None:
         said += f", on your bench {best.judged_deg:.3g} deg"
     is_over = (best.judged_deg or 0.0) > (asked.largest_deg or math.inf)

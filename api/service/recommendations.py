@@ -134,6 +134,7 @@ def document(
     }
     return Recommendations(
         requirements=answer.question.requirements.to_dict(),
+        level=answer.question.requirements.judged_level,
         sort=answer.sort,
         order=answer.order,
         count=len(answer.architectures),
@@ -265,7 +266,9 @@ def _cards(answer: Answer) -> Iterator[Card]:
         if among:
             best = min(among, key=lambda one: one.shown_deg)
             built = "" if best.place.is_built else "; built by nobody we know of"
-            yield _card(title, best, f"own error {best.shown_deg:.3g} deg, simulated{built}")
+            level = answer.question.requirements.judged_level
+            kind = "error in flight" if level == "flight" else "own error"
+            yield _card(title, best, f"{kind} {best.shown_deg:.3g} deg, simulated{built}")
 
 
 def _card(title: Any, one: RankedArchitecture, words: str) -> Card:
@@ -325,19 +328,24 @@ def _calibration(answer: Answer, one: found_by.Calibration) -> Calibration:
 
 
 def _measured(answer: Answer, one: found_by.Calibration) -> Measured | None:
-    pipeline, own = one.pipeline, one.own
-    if pipeline is None or own is None:
+    pipeline, own, judged = one.pipeline, one.own, one.judged
+    if pipeline is None or own is None or judged is None:
         return None
     asked = answer.question.requirements
-    low, high = one.interval_deg or (None, None)
+    low, high = one.own_interval_deg or (None, None)
+    least, most = one.flight_interval_deg or (None, None)
     whole = pipeline.half_fov_deg is None or own.field_deg == 2 * pipeline.half_fov_deg
-    bounds = {score.condition: score.bound_deg for score in pipeline.scores(asked.hazards)}
+    on_the_ground = pipeline.own or pipeline
+    bounds = {score.condition: score.bound_deg for score in on_the_ground.scores(asked.hazards)}
     return Measured(
         dataset=pipeline.dataset,
         extractor=pipeline.extractor,
         model=pipeline.model,
-        condition=own.condition,
-        field_deg=own.field_deg,
+        condition=judged.condition,
+        field_deg=judged.field_deg,
+        flight_error_deg=None if least is None or not one.flight else _digits(one.flight.error_deg),
+        flight_low_deg=_digits(least),
+        flight_high_deg=_digits(most),
         own_error_deg=None if low is None else _digits(own.error_deg, 5),
         own_low_deg=_digits(low),
         own_high_deg=_digits(high),

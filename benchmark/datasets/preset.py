@@ -483,6 +483,7 @@ class Preset:
                 "description": setup.description,
                 "tolerances": describe(tolerances(setup.sensor)),
                 "reference_error_deg": self.reference_error_deg(name),
+                **({} if setup.mission is None else {"sources": setup.mission.sources}),
                 **own[name],
             }
             for name, setup in self.setups.items()

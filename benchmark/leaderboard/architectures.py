@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from benchmark.contract import FLIGHT
 from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_answer
 from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.score import is_available
@@ -44,6 +45,8 @@ def architectures(board: Board) -> list[dict[str, Any]]:
         best pipeline's ``dataset``, names, ``studies`` that used it, ``half_fov_deg``,
         ``own_error_deg`` with its relative standard error ``own_se``, its error on a bench,
         and its score on the standard unit (null where nothing has an error);
+        ``flight_error_deg`` with ``flight_low_deg`` and ``flight_high_deg``, the same pipeline's
+        error in flight and its range over units (null where it was not flown);
         ``quoted_deg``, the error on the odd units of what errs least on the even ones, data
         set and pipeline; ``others_low_deg`` and ``others_high_deg``, its smallest and
         largest error on the units other than the standard one (null where one of them gives
@@ -89,6 +92,7 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     known = bool(others) and None not in others
     return {
         **{name: best.get(name) for name in _OF_SCORE},
+        **_in_flight(best, datasets),
         "studies": list(best.get("studies", ())),
         "quoted_deg": _quote(ranked),
         "others_low_deg": min(others) if known else None,
@@ -98,6 +102,20 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         **_tie(best, next_one),
         **{f"partial_{name}": finer.get(name) for name in _OF_FINER},
     }
+
+
+def _in_flight(best: Row, datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return the error in flight of the best pipeline; of a data set in orbit its own."""
+    flown: Row = {}
+    for dataset in datasets:
+        if dataset["name"] == best.get("dataset"):
+            condition = dataset["conditions"][0] if dataset["in_orbit"] else FLIGHT
+            names = condition, best["extractor"], best["model"]
+            for row in dataset["rows"]:
+                if (row["condition"], row["extractor"], row["model"]) == names:
+                    flown = row
+    columns = {"error": "own_error_deg", "low": "low_deg", "high": "high_deg"}
+    return {f"flight_{name}_deg": flown.get(column) for name, column in columns.items()}
 
 
 def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:

@@ -63,6 +63,7 @@ def build(
         ``timed_on`` (the machine of the times, null for none), ``sweeps`` (as given) and
         ``datasets``: each with ``name``, ``version``, ``detector``,
         ``mask``, ``idealisation`` (why it stands for no built sensor, null where it does),
+        ``in_orbit`` (whether its samples are of a flight),
         ``conditions`` (the nominal one first), what its first condition's board states once
         (``smallest_ratio`` that it tells apart, ``quoted_deg`` of its leader on units that did not
         choose it, ``references`` used, ``bench_deg`` and ``bench_aligned_deg`` that a calibration
@@ -125,6 +126,7 @@ def build(
                 "detector": listed[0]["detector"],
                 "mask": listed[0]["mask"],
                 "idealisation": hardware_match(name).idealisation or None,
+                "in_orbit": _is_in_orbit(name),
                 "conditions": conditions,
                 **facts,
                 "rows": listed,
@@ -138,6 +140,11 @@ def build(
         "timed_on": times.machine.model_dump() if times.machine else None,
         "sweeps": list(swept),
     }
+
+
+def _is_in_orbit(name: str) -> bool:
+    """Say whether the samples of a data set are of a flight already."""
+    return name in names() and bool(get(name).context_columns)
 
 
 def _facts(name: str, found: RankedBoard, pin: Pin | None, rows: Sequence[Row]) -> dict[str, Any]:

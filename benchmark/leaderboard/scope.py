@@ -26,7 +26,7 @@ from itertools import groupby
 from types import MappingProxyType
 from typing import Any
 
-from benchmark.contract import ON_BENCH, Cell
+from benchmark.contract import FLIGHT, ON_BENCH, Cell
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import is_available
 from benchmark.plan.combinations import cells, scorable_plan, study_plans
@@ -51,7 +51,7 @@ MOST = 20
 #: Pipelines of a board that are scored under every condition, and on drawn benches.
 LEADING = 5
 #: Conditions of sensors that are no longer as they were calibrated: chance differs by unit.
-SINCE = ("flight", "hot", "cold", "aged")
+SINCE = (FLIGHT, "hot", "cold", "aged")
 
 
 def compare(parts: Parts) -> dict[str, str]:

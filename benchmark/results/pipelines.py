@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import math
 import statistics
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from benchmark import datasets
+from benchmark.contract import FLIGHT
 from benchmark.datasets.hazards import hazards
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.ranking import UnitErrors
@@ -37,8 +38,10 @@ def pipelines(
 ) -> list[MeasuredPipeline]:
     """Return what is measured of every pipeline on every standard data set.
 
-    Errors are own errors over all answers, of the standard unit under each condition, times what
-    the geometric mean over units is of the standard unit's under the first.
+    Errors are own errors over all answers: geometric means over units, or, of a condition that was
+    measured on the standard one alone, its error times what that mean is of the standard unit's
+    under the first. In flight are the errors under the condition of that name, and of data sets in
+    orbit those of the first.
 
     Rows of data sets, conditions and models that there are no longer are passed over. `latency_us`
     is of a call with one sample on this machine, by data set, extractor and model; `bench_deg` the
@@ -51,6 +54,7 @@ def pipelines(
     known = {name: stages(scored) for name, scored in catalogue().models.items()}
     conditions = {name: datasets.get(name).conditions for name in datasets.names()}
     needs = {name: _needs(scored.about.context) for name, scored in catalogue().models.items()}
+    aloft = {name for name in conditions if datasets.get(name).context_columns}
     spread = _spreads(by)
     found = []
     for place, scores in by.items():
@@ -60,9 +64,12 @@ def pipelines(
         first = scores.get((conditions[dataset][0], 0))
         if first is None:
             continue
-        units = _unit_errors(scores, first["condition"])
-        standard = first["rms_all_answers_deg"]
-        share = _middle(units) / standard if len(units) > 1 and standard else 1.0
+        own = _over_units(scores, first["condition"])
+        flight = own if dataset in aloft else _over_units(scores, FLIGHT)
+        if own is None:
+            continue
+        units, nominal = own
+        share = _share(units, first)
         found.append(
             MeasuredPipeline(
                 dataset=dataset,
@@ -72,11 +79,9 @@ def pipelines(
                 extractor_taxonomy=first["extractor_taxonomy"],
                 model=model,
                 stages=known[model],
-                nominal=dataclasses.replace(
-                    _score(first, share), rms_deg=UnitErrors(units).own_error_deg
-                ),
+                nominal=nominal,
                 hazards={
-                    hazard: tuple(_score(scores[name, 0], share) for name in names)
+                    hazard: tuple(_under(scores, name, share) for name in names)
                     for hazard, names in hazards(conditions[dataset]).items()
                     if all((name, 0) in scores for name in names)
                 },
@@ -86,6 +91,9 @@ def pipelines(
                 unit_ratios=unit_ratios(units, spread.get(dataset, 0.0)),
                 bench_deg=(bench_deg or {}).get(dataset) or 0.0,
                 needs=needs[model],
+                flight=flight[1] if flight else None,
+                flight_units_deg=flight[0] if flight else (),
+                flight_ratios=unit_ratios(flight[0] if flight else (), spread.get(dataset, 0.0)),
             )
         )
     return found
@@ -102,7 +110,7 @@ def standard_benches(pins: Mapping[tuple[str, str, str], Pin]) -> dict[str, floa
 
 
 def _unit_errors(scores: Mapping[tuple[str, int], Row], condition: str) -> tuple[float, ...]:
-    """Return the errors of all units under the first condition, the standard one first."""
+    """Return the errors of all units under a condition, the standard one first."""
     return tuple(
         row["rms_all_answers_deg"]
         for (name, _), row in sorted(scores.items())
@@ -110,8 +118,39 @@ def _unit_errors(scores: Mapping[tuple[str, int], Row], condition: str) -> tuple
     )
 
 
-def _middle(errors: Sequence[float]) -> float:
-    return math.exp(math.fsum(map(math.log, errors)) / len(errors))
+def _over_units(
+    scores: Mapping[tuple[str, int], Row], condition: str
+) -> tuple[tuple[float, ...], Score] | None:
+    """Return the errors of all units under a condition, and the score with their geometric mean.
+
+    Of the standard unit are what is no error, and the errors over cones, in proportion. None where
+    the standard unit was not measured.
+    """
+    standard = scores.get((condition, 0))
+    if standard is None:
+        return None
+    units = _unit_errors(scores, condition)
+    mean_deg = UnitErrors(units).own_error_deg
+    return units, dataclasses.replace(_score(standard, _share(units, standard)), rms_deg=mean_deg)
+
+
+def _share(units: tuple[float, ...], standard: Row) -> float:
+    """Return the geometric mean over units over the error of the standard one; 1 for one unit."""
+    error: float | None = standard["rms_all_answers_deg"]
+    if len(units) < 2 or not error:
+        return 1.0
+    return math.exp(math.fsum(map(math.log, units)) / len(units)) / error
+
+
+def _under(scores: Mapping[tuple[str, int], Row], condition: str, share: float) -> Score:
+    """Return the score under a condition, over its units where several were measured.
+
+    Of one unit the error is taken times the `share` that the units have of it under the first.
+    """
+    found = _over_units(scores, condition)
+    if found is not None and len(found[0]) > 1:
+        return found[1]
+    return _score(scores[condition, 0], share)
 
 
 def _spreads(by: Mapping[Place, Mapping[tuple[str, int], Row]]) -> dict[str, float]:

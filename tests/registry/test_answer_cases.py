@@ -144,6 +144,43 @@ def test_units_within_a_limit_are_counted_and_their_share_decides(facts_of: Fact
         assert found.best.units_within == 8
 
 
+def test_limits_are_judged_in_flight_unless_own_errors_are_asked_for(facts_of: FactsOf) -> None:
+    flown = {
+        "flight": Score("flight", 0.4, availability=1.0),
+        "flight_units_deg": (0.4,) * 10,
+        "flight_ratios": (0.5,) * 9 + (2.0,),
+    }
+    rows = [
+        row(rms_deg=0.01, **flown),
+        row(rms_deg=0.02, model="lut", stages=("LUT",), flight=Score("flight", 0.1)),
+        row(rms_deg=0.001, model="ann", stages=("ANN",)),  # never flown: not judged in flight
+    ]
+    facts = facts_of([study()])
+    for limit, level, best in (
+        *((0.2, "flight", "lut"), (0.05, "flight", None)),
+        *((0.2, "own", "ann"), (0.05, "own", "ann")),
+    ):
+        found = at(recommend({"max_error_deg": limit, "level": level}, rows, facts=facts))  # type: ignore[arg-type]
+        assert (None if found is None else found.best.pipeline.model) == best  # type: ignore[union-attr]
+    default = at(recommend({"model": "SPM"}, rows, facts=facts_of([study(model=["SPM"])])))  # type: ignore[arg-type]
+    assert default is not None
+    assert default.best is not None
+    assert default.best.judged is not None
+    assert default.best.own is not None
+    assert (default.best.judged.error_deg, default.best.own.error_deg) == (0.4, 0.01)
+    # each level has the interval of its own units
+    low, high = default.best.flight_interval_deg or (0.0, 0.0)
+    assert math.isclose(high / 0.4, 0.4 / low)
+    assert math.isclose(math.log(high / 0.4), 2.0 * math.log(4.0) * math.sqrt(0.1) / math.sqrt(10))
+
+
+def test_a_record_without_flights_is_judged_by_own_errors(facts_of: FactsOf) -> None:
+    found = at(recommend({"max_error_deg": 0.2}, [row(rms_deg=0.1)], facts=facts_of([study()])))  # type: ignore[list-item]
+    assert found is not None
+    assert found.best is not None
+    assert found.best.flight is None
+
+
 def test_failed_runs_and_numbers_that_are_none_do_not_count() -> None:
     rows = [row(dataset="c"), row(dataset="a", model="z"), row(rms_deg=None), row(rms_deg=math.nan)]
     for order in (rows, rows[::-1]):

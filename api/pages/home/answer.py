@@ -145,31 +145,40 @@ def _own(known: Knowledge, measured: Measured) -> Markup:
 
 
 def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
-    """Return own errors of the best calibrations of all architectures of an answer."""
+    """Return the judged errors of the best calibrations of all architectures of an answer."""
     words, more = ACROSS.get(across, ACROSS["field"])
+    level = found.question.requirements.judged_level
     points: list[Point] = []
     left_out: list[str] = []
     for one in (service.architecture(found, one) for one in found.architectures):
         measured = None if one.best is None else one.best.measured
-        if measured is None or not measured.own_error_deg:
+        if measured is None or not (error := _judged_deg(measured, level)):
             continue
         value = measured.field_deg
         if not more:
             place = (measured.dataset, measured.extractor, measured.model)
             value = known.measurements.curve_of.get(place, {}).get("needed_poses")
         if value:
-            points.append(_point(one, measured, value))
+            points.append(_point(one, measured, value, error))
         else:
             left_out.append(f"{one.detector} + {one.mask}")
-    return Scatter(points, words, more, "°" if more else "poses", left_out)
+    up = "error in flight" if level == "flight" else "own error"
+    return Scatter(points, up, words, more, "°" if more else "poses", left_out)
 
 
-def _point(one: Architecture, measured: Measured, across: float) -> Point:
+def _judged_deg(measured: Measured, level: str) -> float | None:
+    """Return the error at a level; the own one of what was not flown."""
+    if level == "flight" and measured.flight_error_deg is not None:
+        return measured.flight_error_deg
+    return measured.own_error_deg
+
+
+def _point(one: Architecture, measured: Measured, across: float, error_deg: float) -> Point:
     return Point(
         f"{one.detector} + {one.mask}",
         architecture_page(one.detector, one.mask),
         across,
-        measured.own_error_deg or 0.0,
+        error_deg,
         measured.bound_deg,
         is_built=one.built,
     )

@@ -34,6 +34,7 @@ KINDS = {
     "measured": "measured here",
     "both": "both reported and measured",
 }
+LEVELS_SAID = {"own": "own, of sensor and method"}
 _SAID = {
     "max_error_deg": "error at most {:g}°",
     "min_fov_deg": "full field of at least {:g}°",
@@ -47,6 +48,7 @@ _SAID = {
     "sun_distance_au": "{:g} au from the Sun",
     "processor": "processor {}",
     "evidence": "evidence {}",
+    "level": "{} error",
     "mission": "mission {}",
 }
 _LISTS = {
@@ -116,12 +118,13 @@ def form(
         "shares": SHARES,
         "orders": ORDERS,
         "kinds": KINDS,
+        "levels": LEVELS_SAID,
         "missions": _same(MISSIONS),
         "more": len(asked_for) + sum(name in filled for name in (*NUMBERS, *_CHOSEN)),
     }
 
 
-_CHOSEN = ("processor", "evidence", "sort", "edition")
+_CHOSEN = ("processor", "evidence", "level", "sort", "edition")
 
 
 def _values(known: Knowledge, attribute: str) -> list[tuple[str, str]]:

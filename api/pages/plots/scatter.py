@@ -1,4 +1,4 @@
-"""Architectures as points: own error over field or effort, bounds and the Pareto front."""
+"""Architectures as points: error over field or effort, bounds and the Pareto front."""
 
 from __future__ import annotations
 
@@ -50,11 +50,13 @@ class Scatter:
 
     Attributes
     ----------
+    up : which error, in words
     more_is_better : whether a larger value across is better, as a field is and an effort is not
     left_out : names of measured architectures that have no value across
     """
 
     points: Sequence[Point]
+    up: str
     across: str
     more_is_better: bool
     unit: str = ""
@@ -82,7 +84,7 @@ class Scatter:
             (p.across for p in self.points), LEFT, WIDTH - RIGHT, logarithmic=log, from_zero=False
         )
         front = self.front
-        parts = [frame(across, up, self.across, "own error, °"), self._line(front, across, up)]
+        parts = [frame(across, up, self.across, f"{self.up}, °"), self._line(front, across, up)]
         places = {p.name: (across.at(p.across), up.at(p.error_deg)) for p in self.points}
         parts += [
             self._point(point, places[point.name], up, front=point in front)
@@ -90,8 +92,8 @@ class Scatter:
         ]
         parts += _labels(front, [p for p in self.points if p not in front], places)
         label = (
-            f"Own error of {len(self.points)} architectures against {self.across}; the list has "
-            "the same numbers"
+            f"{self.up.capitalize()} of {len(self.points)} architectures against {self.across}; "
+            "the list has the same numbers"
         )
         return str(svg(Markup("").join(parts), label, "plot scatter", role="group"))
 
@@ -110,7 +112,7 @@ class Scatter:
         bound = f", bound {degrees(point.bound_deg)}" if point.bound_deg else ""
         value = wide(point.across) if self.unit == "°" else f"{point.across:g} {self.unit}"
         unbuilt = "" if point.is_built else ", never built"
-        said = f"{point.name}: own error {degrees(point.error_deg)}{bound}, {value}{unbuilt}"
+        said = f"{point.name}: {self.up} {degrees(point.error_deg)}{bound}, {value}{unbuilt}"
         kind = f"{'pareto' if front else 'other'}{'' if point.is_built else ' unbuilt'}"
         return _POINT.format(at=point.address, said=said, stem=stem, kind=kind, x=x, y=y)
 

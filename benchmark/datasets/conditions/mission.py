@@ -5,15 +5,13 @@ from __future__ import annotations
 import dataclasses
 from typing import TypeVar
 
+from benchmark.contract import FLIGHT
 from benchmark.datasets.conditions.flight import FlightPreset
 from benchmark.datasets.preset import Preset
 from benchmark.simulator.flight.mission import LEVELS
 from benchmark.simulator.light.clouds import CloudyEarth
 from benchmark.simulator.sensor import SeesEarth
 from benchmark.simulator.sensors.faces import Faces
-
-#: Its name.
-FLIGHT = "flight"
 
 Flown = TypeVar("Flown", bound=Preset)
 

@@ -142,6 +142,11 @@ class Mission:
                 ):
                     raise ValueError(f"{one.name} must be finite, not negative; got {value}")
 
+    @property
+    def sources(self) -> dict[str, str]:
+        """Where each amount comes from, by its name."""
+        return {one.name: SOURCES.get(one.name, "assumed") for one in dataclasses.fields(self)}
+
     def times(self, factor: float) -> Self:
         """Return the mission with its amounts times a factor; material, and what is on, stay."""
         scaled = {

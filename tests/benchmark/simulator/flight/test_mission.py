@@ -187,6 +187,15 @@ def test_every_ground_board_flies_and_levels_go_up() -> None:
         Mission().alone("wind")
 
 
+def test_a_card_says_where_each_amount_of_a_mission_comes_from() -> None:
+    flight = datasets.get("cmos-slit").card()["conditions"][FLIGHT]
+    amounts = flight["parameters"]["mission"]
+    assert amounts["launch_shift_um"] == 0.3
+    assert flight["sources"].keys() == amounts.keys() - {"type"}
+    assert flight["sources"]["launch_shift_um"] == "assumed"
+    assert "pd-orbit" in flight["sources"]["gain_per_k"]
+
+
 def test_dark_readings_of_a_flight_are_those_of_an_eclipse() -> None:
     preset = datasets.get("cmos-slit")
     ground, again = preset.references("nominal"), preset.references(FLIGHT, "test")
