@@ -94,7 +94,7 @@ def blank_bibtex(studies: Sequence[Study]) -> str:
     unchanged confirms nothing.
     """
     head = (
-        "% Fill in the blanks and send this file, or the survey's own .bib or .bbl.\n"
+        "% Fill in the blanks and send this file, or the survey's own .bib.\n"
         "% An entry without a title says nothing, and may stay as it is.\n"
         "% Of @misc make @article, @inproceedings, @phdthesis or @techreport where it is one.\n"
     )

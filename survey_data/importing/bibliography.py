@@ -1,10 +1,10 @@
-"""Reading publications: BibTeX, the .bbl that BibTeX makes of it, RIS and CSL JSON."""
+"""Reading publications from BibTeX and RIS."""
 
 from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -29,11 +29,10 @@ from bibtexparser.splitter import Splitter
 from pylatexenc.latex2text import LatexNodes2Text
 from rispy.config import TAG_KEY_MAPPING
 
-from files.reading import FileRefusedError, parse_json
 from survey_data.importing.writing import offered_text
 from survey_data.problems import SurveyImportError
 
-SUFFIXES = (".bib", ".bbl", ".ris", ".json")
+SUFFIXES = (".bib", ".ris")
 _MOST_BYTES = 2_000_000  # thousands of entries; TeX takes half a minute for a million letters
 _LONGEST_FIELD = 20_000
 _MOST_ENTRIES = 10_000
@@ -45,29 +44,16 @@ _VENUES = (
     *("howpublished", "publisher"),
 )
 _TEXTS = (*_VENUES, "title", "year", "date", "volume", "number", "issue", "pages")
-#: What BibTeX, RIS and CSL JSON call each type of our table of studies.
+#: What BibTeX and RIS call each type of our table of studies.
 _KINDS = {
-    "journal": ("article", "JOUR", "JFULL", "EJOUR", "MGZN", "article-journal"),
-    "conference": (
-        *("inproceedings", "conference", "incollection"),
-        *("CONF", "CPAPER", "paper-conference"),
-    ),
+    "journal": ("article", "JOUR", "JFULL", "EJOUR", "MGZN"),
+    "conference": ("inproceedings", "conference", "incollection", "CONF", "CPAPER"),
     "thesis": ("phdthesis", "mastersthesis", "thesis", "THES"),
     "report": ("techreport", "report", "RPRT"),
     "preprint": ("preprint", "UNPB", "INPR"),
 }
 _KIND_OF = {name: kind for kind, names in _KINDS.items() for name in names}
-_CSL_MEMBERS = {
-    **{name: name for name in ("title", "volume")},
-    "venue": "container-title",
-    "number": "issue",
-    "pages": "page",
-    "doi": "DOI",
-    "url": "URL",
-}
 _BRACED = r"\{((?:[^{}]++|\{(?:[^{}]++|\{[^{}]*+\})*+\})*+)\}"
-_BBL_ITEM = re.compile(rf"\\bibitem\s*(?:\[(?:[^\[\]{{}}]++|{_BRACED})*+\]\s*)?{_BRACED}")
-_BBL_FIELD = re.compile(rf"\\(?:bibinfo\s*\{{(\w+)\}}|(doi|url)|href)\s*{_BRACED}")
 _TEX = LatexNodes2Text(math_mode="text")
 # Both warn of what they pass over; what matters of it is raised here.
 for _library in ("bibtexparser", "pylatexenc"):
@@ -79,7 +65,7 @@ class Entry:
     """What a bibliography says of a key; a text is empty where it says nothing.
 
     ``authors`` are separated by semicolons, ``venue`` ends with volume, number and pages, ``kind``
-    is a type of the table of studies; ``line`` is where the entry starts, 1 in RIS and CSL JSON.
+    is a type of the table of studies; ``line`` is where the entry starts, 1 in RIS.
     """
 
     key: str
@@ -99,7 +85,7 @@ class Entry:
 
 
 def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
-    """Read the entries of a bibliography in its order; BibTeX or .bbl for any other suffix.
+    """Read the entries of a bibliography in its order; BibTeX for any suffix but .ris.
 
     Raises
     ------
@@ -108,14 +94,9 @@ def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
     """
     where = Path(path)
     text = offered_text(where, _MOST_BYTES)
-    read: Callable[[str, str], Iterable[Entry]]
+    read, expected = _bibtex, "BibTeX (@article{...)"
     if where.suffix.casefold() == ".ris":
         read, expected = _ris, "RIS (TY  - ...)"
-    elif where.suffix.casefold() == ".json":
-        read, expected = _csl, "CSL JSON"
-    else:
-        read = _bbl if "\\bibitem" in text else _bibtex
-        expected = "BibTeX (@article{...) or a .bbl (\\bibitem...)"
     try:
         entries = tuple(islice(read(text, where.name), _MOST_ENTRIES + 1))
     except RecursionError as error:
@@ -188,23 +169,6 @@ def _joined(said: Field | String, strings: Mapping[str, str], name: str) -> str:
         message = f"{name}, line {line}: {said.key} is longer than {_LONGEST_FIELD} characters"
         raise SurveyImportError(message)
     return text
-
-
-def _bbl(text: str, _: str) -> Iterator[Entry]:
-    """Give the entries of a .bbl whose style marks its fields by 'bibinfo'."""
-    items = list(_BBL_ITEM.finditer(text))
-    ends = (*(item.start() for item in items[1:]), len(text))
-    for item, end in zip(items, ends, strict=False):
-        fields: dict[str, str] = {}
-        for mark in _BBL_FIELD.finditer(text, item.end(), end):
-            field = mark[1] or mark[2] or "url"
-            if field == "author" and "author" in fields:
-                fields["author"] += f" and {mark[3]}"
-            else:
-                fields.setdefault(field, mark[3])
-        kind = "article" if "journal" in fields else "inproceedings" * ("booktitle" in fields)
-        line = text.count("\n", 0, item.start()) + 1
-        yield _of_tex(item[2].strip(), kind, fields, line)
 
 
 def _of_tex(key: str, kind: str, said: Mapping[str, str], line: int) -> Entry:
@@ -316,42 +280,3 @@ def _of_ris(record: Mapping[str, Any]) -> Entry:
             "url": first("urls"),
         },
     )
-
-
-def _csl(text: str, name: str) -> Iterator[Entry]:
-    try:
-        document = parse_json(text, Path(name))
-    except FileRefusedError as error:
-        raise SurveyImportError(str(error)) from error
-    for at, item in enumerate(document if isinstance(document, list) else [document]):
-        if not isinstance(item, dict):
-            message = f"item {at + 1}: expected an object of CSL JSON, got {type(item).__name__}"
-            raise SurveyImportError(f"{name}: {message}")
-        said = {name: _scalar(item.get(member)) for name, member in _CSL_MEMBERS.items()}
-        said["venue"] = said["venue"] or _scalar(item.get("publisher"))
-        said["year"] = _csl_year(item.get("issued"))
-        kind = _scalar(item.get("type"))
-        kind = "preprint" if kind == "article" else kind  # which BibTeX calls one of a journal
-        yield _entry(_scalar(item.get("id")), kind, _csl_names(item.get("author")), said)
-
-
-def _csl_names(given: Any) -> Iterator[str]:
-    for name in given if isinstance(given, list) else ():
-        if isinstance(name, dict):
-            parts = (name.get("given"), name.get("non-dropping-particle"), name.get("family"))
-            said = " ".join(filter(None, map(_scalar, parts))) or _scalar(name.get("literal"))
-            yield said.replace(";", ",")
-
-
-def _csl_year(issued: Any) -> str:
-    if not isinstance(issued, dict):
-        return ""
-    parts = _scalar(issued.get("date-parts"))
-    return parts or _scalar(issued.get("raw")) or _scalar(issued.get("literal"))
-
-
-def _scalar(value: Any) -> str:
-    """Return a text or a number as text; the first of a list; '' for anything else."""
-    if isinstance(value, list):
-        return _scalar(value[0]) if value else ""
-    return str(value) if isinstance(value, str | int) and not isinstance(value, bool) else ""

@@ -88,7 +88,7 @@ def import_bibliography(
     Parameters
     ----------
     path : str or Path
-        BibTeX or .bbl, UTF-8, with the survey's keys.
+        BibTeX, UTF-8, with the survey's keys.
     directory : str or Path, optional
         Our tables; by default the package's own data.
     replace_studies : iterable of str

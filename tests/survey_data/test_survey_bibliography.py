@@ -27,19 +27,6 @@ BIB = r"""% the survey's references
 @misc{Herman2025a, title = {The survey's own data}, year = {2025}}
 """
 
-BBL = r"""\begin{thebibliography}{2}
-\expandafter\ifx\csname natexlab\endcsname\relax\fi
-\bibitem[{Duan(2006)}]{Duan2006}
-\bibinfo{author}{J.~Gonz\'{a}lez}, \bibinfo{author}{K.~M\"uller},
-\newblock \bibinfo{title}{Sun sensor error},
-\newblock \bibinfo{journal}{Acta Test} \bibinfo{volume}{3} (\bibinfo{year}{2006})
-  \bibinfo{pages}{1--4}. \DOIprefix\doi{10.1234/abc.5}.
-\bibitem[{Fan et~al.(2017)Fan, Gao}]{Fan2017}
-\bibinfo{author}{Q.~Fan}, \bibinfo{title}{A title},
-\newblock in: \bibinfo{booktitle}{Some Conference}, \bibinfo{year}{2017}.
-\end{thebibliography}
-"""
-
 
 def offer(copy: Any, text: str, name: str = "refs.bib") -> Path:
     path = copy.directory / name
@@ -71,19 +58,6 @@ def test_bibtex_is_read_as_printed(copy: Any) -> None:
         "A Title, With Commas",
         "conference",
     )
-
-
-def test_a_bbl_is_read_alike(copy: Any) -> None:
-    first, second = read_bibliography(offer(copy, BBL, "refs.bbl"))
-    assert (first.key, first.title, first.authors) == (
-        *("Duan2006", "Sun sensor error"),
-        "J. González; K. Müller",
-    )
-    assert (first.venue, first.year, first.doi, first.kind, first.line) == (
-        *("Acta Test, vol. 3, pp. 1-4", "2006", "10.1234/abc.5"),
-        *("journal", 3),
-    )
-    assert (second.key, second.venue, second.kind) == ("Fan2017", "Some Conference", "conference")
 
 
 def test_a_comparison_shows_what_differs_and_writes_nothing(copy: Any) -> None:

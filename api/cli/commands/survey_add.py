@@ -34,10 +34,7 @@ def add(
     context: typer.Context,
     file: Annotated[
         Path | None,
-        typer.Argument(
-            help="TOML template, or bibliography (.bib, .ris, .json).",
-            show_default=False,
-        ),
+        typer.Argument(help="TOML template, or bibliography (.bib, .ris).", show_default=False),
     ] = None,
     *,
     init: Annotated[

@@ -23,7 +23,7 @@ def import_(
     file: Annotated[
         Path | None,
         typer.Argument(
-            help="CSV or XLSX table of studies, or the survey's bibliography (.bib, .bbl).",
+            help="CSV or XLSX table of studies, or the survey's bibliography (.bib).",
             show_default=False,
         ),
     ] = None,
@@ -31,7 +31,7 @@ def import_(
     bibliography: Annotated[
         Path | None,
         typer.Option(
-            help="Bibliography of the survey, BibTeX or .bbl, with any file name.",
+            help="Bibliography of the survey, BibTeX, with any file name.",
             show_default=False,
         ),
     ] = None,
@@ -68,7 +68,7 @@ def import_(
     """
     if (file is None) == (bibliography is None):
         raise WrongCallError("expected either a table or --bibliography FILE")
-    if file is not None and file.suffix.casefold() in (".bib", ".bbl"):
+    if file is not None and file.suffix.casefold() == ".bib":
         file, bibliography = None, file
     if file is None:
         if mapped or sheet:

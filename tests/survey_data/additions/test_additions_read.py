@@ -83,13 +83,9 @@ PB  - Made-up University
 DO  - 10.1234/made.up
 ER  -
 """
-CSL = """[{"id": "http://x", "type": "thesis", "title": "A sun sensor that nobody built",
-"author": [{"given": "Jane", "family": "Doe"}, {"given": "Max", "family": "Müller"}],
-"issued": {"date-parts": [[2030, 1, 2]]}, "publisher": "Made-up University",
-"DOI": "10.1234/made.up"}]"""
 
 
-@pytest.mark.parametrize(("suffix", "text"), [("bib", BIBTEX), ("ris", RIS), ("json", CSL)])
+@pytest.mark.parametrize(("suffix", "text"), [("bib", BIBTEX), ("ris", RIS)])
 def test_a_publication_is_read_from_each_kind_of_bibliography(
     recorded: Path, suffix: str, text: str
 ) -> None:
