@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import product
 
 import pandas as pd
 from pydantic import BaseModel
 
-from survey_data.importing.values import normalise, similarity
+from survey_data.importing.values import normalise
 from survey_data.nearest import nearest_name
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables
 
 IGNORE = "-"
-_LEAST_SCORE = 0.8
 _NUMBER = r"[<≤±~]?\s*[0-9].*"
 # How tables of studies usually name their bibliographic columns, alone or among other words.
 _IDENTIFICATION = {
@@ -26,15 +26,10 @@ _IDENTIFICATION = {
 
 
 class ColumnMatch(BaseModel, frozen=True):
-    """A column and what it was taken for; `how` is ``similarity`` or ``override``.
-
-    `score` is the likeness of the names, from 0 to 1.
-    """
+    """A column and what it was taken for."""
 
     column: str
     target: str
-    score: float
-    how: str = "similarity"
 
 
 class ColumnMapping(BaseModel):
@@ -59,11 +54,11 @@ def match_columns(
 ) -> ColumnMapping:
     """Match the columns of a table, as `read_table` gives it, to studies and attributes.
 
-    Columns are matched one to one by their names, the likeliest pair first; numbered columns
-    (``Task 1``, ``Task 2``) follow the one that was matched. A column of accuracies holds classes
-    or numbers, as most of its cells do. `overrides` give a column's target: study, title, authors,
-    year or an attribute, or ``-`` to leave it aside; values of several columns of one attribute
-    are united.
+    Columns are matched one to one: a name of the target is the column's name or, failing that, all
+    of its words are in it; numbered columns (``Task 1``, ``Task 2``) follow the one that was
+    matched. A column of accuracies holds classes or numbers, as most of its cells do. `overrides`
+    give a column's target: study, title, authors, year or an attribute, or ``-`` to leave it aside;
+    values of several columns of one attribute are united.
 
     Raises
     ------
@@ -78,30 +73,18 @@ def match_columns(
     given = dict(overrides or {})
     columns = [str(name) for name in frame.columns]
     _check_overrides(columns, list(labels), given)
-    taken = {
-        column: ColumnMatch(column=column, target=target, score=1.0, how="override")
-        for column, target in given.items()
-        if target != IGNORE
-    }
-    found = [
-        ColumnMatch(column=column, target=target, score=_score(column, names))
-        for column in columns
-        for target, names in labels.items()
-        if column not in given and _can_hold(frame[column], target)
-    ]
-    for match in sorted(found, key=lambda m: -m.score):
-        if match.score < _LEAST_SCORE:
-            break
-        if match.column not in taken and match.target not in {m.target for m in taken.values()}:
-            taken[match.column] = match
-    stems = {_stem(m.column): m.target for m in taken.values() if m.target not in _IDENTIFICATION}
+    taken = {column: target for column, target in given.items() if target != IGNORE}
+    for is_named in (_is_one, _is_within):
+        for column, (target, names) in product(columns, labels.items()):
+            free = column not in {*given, *taken} and target not in taken.values()
+            if free and is_named(column, names) and _can_hold(frame[column], target):
+                taken[column] = target
+    stems = {_stem(c): target for c, target in taken.items() if target not in _IDENTIFICATION}
     for column in columns:  # numbered ones
-        target = stems.get(_stem(column))
-        if target is not None and column not in given and column not in taken:
-            score = _score(column, labels[target])
-            taken[column] = ColumnMatch(column=column, target=target, score=score)
+        if _stem(column) in stems and column not in given:
+            taken.setdefault(column, stems[_stem(column)])
     mapping = ColumnMapping(
-        matches=tuple(taken[column] for column in columns if column in taken),
+        matches=tuple(ColumnMatch(column=c, target=taken[c]) for c in columns if c in taken),
         ignored=tuple(column for column in columns if column not in taken),
     )
     targets = {match.target for match in mapping.matches}
@@ -114,14 +97,13 @@ def match_columns(
     return mapping
 
 
-def _score(column: str, names: tuple[str, ...]) -> float:
-    """Return how like a column's name is to one of the names of a target."""
-    plain = normalise(column)
-    found = [0.0]
-    for label in map(normalise, names):
-        within = set(label.split()) <= set(plain.split())
-        found.append(max(similarity(plain, label), 0.8 * within))
-    return round(max(found), 3)
+def _is_one(column: str, names: Sequence[str]) -> bool:
+    return normalise(column) in map(normalise, names)
+
+
+def _is_within(column: str, names: Sequence[str]) -> bool:
+    words = set(normalise(column).split())
+    return any(words.issuperset(normalise(name).split()) for name in names)
 
 
 def _can_hold(cells: pd.Series, target: str) -> bool:

@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 from functools import partial
 
-from survey_data.importing.values import normalise, similarity
+from survey_data.importing.values import normalise
 from survey_data.tables import SurveyTables
 
-_LEAST_SCORE = 0.92
-_LEAST_LEAD = 0.03
 _KEY = re.compile(r"([^\W\d_]+)([0-9]{4})([a-z]?)")
 
 
@@ -58,22 +56,12 @@ class StudyFinder:
         raise StudyNotFoundError("; ".join(reasons) or "the row names no study")
 
     def _find_title(self, title: str) -> str:
-        plain = normalise(title)
-        keys = self._titles.get(plain) or self._keys_of_like_title(plain)
+        keys = self._titles.get(normalise(title))
         if not keys:
             raise StudyNotFoundError(f"no study has the title {title!r}")
         if len(keys) > 1:
             raise StudyNotFoundError(f"the title {title!r} may mean {' or '.join(sorted(keys))}")
         return keys[0]
-
-    def _keys_of_like_title(self, plain: str) -> list[str]:
-        lengths = (0.8 * len(plain), len(plain) / 0.8)  # others cannot be so much alike
-        near = [other for other in self._titles if lengths[0] <= len(other) <= lengths[1]]
-        ranked = sorted(((similarity(plain, other), other) for other in near), reverse=True)
-        if not ranked or ranked[0][0] < _LEAST_SCORE:
-            return []
-        likeliest = [other for score, other in ranked if ranked[0][0] - score < _LEAST_LEAD]
-        return [key for other in likeliest for key in self._titles[other]]
 
     def _find_author(self, authors: str, year: str) -> str:
         first = re.split(r"[;,&]|\band\b|\bet\b", authors)[0]

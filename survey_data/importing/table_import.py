@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -16,7 +16,7 @@ from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.columns import ColumnMapping, match_columns
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError
 from survey_data.importing.table_reader import read_table
-from survey_data.importing.values import UnreadableValueError, ValueMatch, ValueReader, column_unit
+from survey_data.importing.values import UnreadableValueError, ValueReader, column_unit
 from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.problems import Problem, SurveyImportError
 from survey_data.reported import KIND_OF, UNSPECIFIED
@@ -75,9 +75,9 @@ class ImportPlan(BaseModel, frozen=True):
     """What an import would do.
 
     `differences` holds new, changed and conflicting cells, `confirmed` the cells whose basis
-    alone rises; `guesses` the values read by similarity (score below 1); `errors` the cells that
-    could not be read, which forbid applying; `withdrawn` the rows of our other tables that rest on
-    a replaced value; `written` the number of cells that have been written.
+    alone rises; `errors` the cells that could not be read, which forbid applying; `withdrawn` the
+    rows of our other tables that rest on a replaced value; `written` the number of cells that have
+    been written.
     """
 
     source: str
@@ -86,7 +86,6 @@ class ImportPlan(BaseModel, frozen=True):
     unmatched: tuple[UnmatchedRow, ...]
     differences: tuple[Difference, ...]
     confirmed: tuple[Difference, ...]
-    guesses: tuple[ValueMatch, ...]
     errors: tuple[Problem, ...]
     withdrawn: tuple[Withdrawn, ...] = ()
     written: int = 0
@@ -168,23 +167,23 @@ def plan_import(
     definitions = tables.attribute_definitions
     single = set(definitions.loc[~definitions["multiple"], "attribute"])
     columns = [match for match in mapping.matches if match.target in mapping.attributes]
-    stated: dict[tuple[str, str], dict[str, ValueMatch]] = {}
+    stated: dict[tuple[str, str], list[str]] = {}
     place: dict[tuple[str, str], tuple[int, str]] = {}
     for about, match in itertools.product(matched, columns):
         row, cell = about.row, (about.study, match.target)
         text = str(frame.at[row, match.column])
         try:
-            for value in reader.read(match.target, text, column_unit(match.column)):
-                stated.setdefault(cell, {}).setdefault(value.value, value)
-                place.setdefault(cell, (row, match.column))
+            values = reader.read(match.target, text, column_unit(match.column))
         except UnreadableValueError as error:
             errors.append(Problem(source, row, match.column, str(error)))
             continue
+        if values:
+            stated[cell] = list(dict.fromkeys([*stated.get(cell, ()), *values]))
+            place.setdefault(cell, (row, match.column))
         if match.target in single and len(stated.get(cell, ())) > 1:
             message = f"{about.study} takes one {match.target}, got {', '.join(stated[cell])}"
             errors.append(Problem(source, row, match.column, message))
     found = _compare(tables, stated, place)
-    values = [value for cell in stated.values() for value in cell.values() if value.score < 1]
     return ImportPlan(
         source=source,
         mapping=mapping,
@@ -192,7 +191,6 @@ def plan_import(
         unmatched=tuple(unmatched),
         differences=tuple(entry for entry in found if entry.kind != "confirmed"),
         confirmed=tuple(entry for entry in found if entry.kind == "confirmed"),
-        guesses=tuple({(value.attribute, value.text): value for value in values}.values()),
         errors=tuple(errors),
         withdrawn=tuple(_withdrawn(tables, found)),
     )
@@ -231,7 +229,7 @@ def _match_rows(
 
 def _compare(
     tables: SurveyTables,
-    stated: Mapping[tuple[str, str], Mapping[str, ValueMatch]],
+    stated: Mapping[tuple[str, str], Sequence[str]],
     place: Mapping[tuple[str, str], tuple[int, str]],
 ) -> list[Difference]:
     rank = dict(zip(tables.bases["basis"], tables.bases["rank"].astype(int), strict=True))

@@ -1,19 +1,16 @@
-"""Reading another table's cells: taxonomy values by similarity, and angles with their units."""
+"""Reading another table's cells: taxonomy values by their spellings, angles with their units."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
 from difflib import SequenceMatcher
-
-from pydantic import BaseModel
+from itertools import chain
 
 from survey_data.accuracy_classes import accuracy_class
+from survey_data.nearest import nearest_name
 from survey_data.tables import SurveyTables
 
-_LEAST_SCORE = 0.85
-_LEAST_LEAD = 0.05  # over the second-best value: a coin toss is no match
-_LEAST_LENGTH = 6  # abbreviations one letter apart are different things
 _NOT_STATED = {
     *("", "none", "na", "n a", "nan", "unknown"),
     *("not stated", "not reported", "tbd", "null"),
@@ -55,15 +52,6 @@ class UnreadableValueError(ValueError):
     """A cell's text is no value of the attribute."""
 
 
-class ValueMatch(BaseModel, frozen=True):
-    """A piece of a cell and the value it was read as; score 1 is a known spelling."""
-
-    attribute: str
-    text: str
-    value: str
-    score: float
-
-
 class ValueReader:
     """Reads cells of a categorical or numeric attribute."""
 
@@ -93,7 +81,7 @@ class ValueReader:
         """Say whether the attribute holds numbers."""
         return bool(self._definitions[attribute]["kind"] == "numeric")
 
-    def read(self, attribute: str, text: str, unit: str = "deg") -> list[ValueMatch]:
+    def read(self, attribute: str, text: str, unit: str = "deg") -> list[str]:
         """Return the values a cell states, in their order; an empty list where it states none.
 
         Several values are parted by comma, semicolon, bar or line break, or by slash, ampersand,
@@ -112,12 +100,10 @@ class ValueReader:
             return [self._read_number(attribute, text, unit)]
         if self._lookup(attribute, text):
             return [self._read_piece(attribute, text)]
-        matches: dict[str, ValueMatch] = {}
-        for piece in _split(text, r"[,;|\n\r]+"):
-            if self._states_something(attribute, piece):
-                for match in self._read_compound(attribute, piece, unit):
-                    matches.setdefault(match.value, match)
-        return list(matches.values())
+        pieces = _split(text, r"[,;|\n\r]+")
+        stated = [piece for piece in pieces if self._states_something(attribute, piece)]
+        values = (self._read_compound(attribute, piece, unit) for piece in stated)
+        return list(dict.fromkeys(chain.from_iterable(values)))
 
     def _states_something(self, attribute: str, text: str) -> bool:
         is_value = normalise(text) == "none" and "none" in self._spellings.get(attribute, {})
@@ -126,11 +112,10 @@ class ValueReader:
     def _lookup(self, attribute: str, text: str) -> set[str]:
         return self._spellings[attribute].get(normalise(text), set())
 
-    def _read_compound(self, attribute: str, piece: str, unit: str) -> list[ValueMatch]:
+    def _read_compound(self, attribute: str, piece: str, unit: str) -> list[str]:
         if attribute == "accuracy" and (_ANGLE.fullmatch(piece) or _INEQUALITY.match(piece)):
             degrees = self._degrees(attribute, piece, unit)
-            value = accuracy_class(self._tables.taxonomy, degrees)
-            return [ValueMatch(attribute=attribute, text=piece, value=value, score=1.0)]
+            return [accuracy_class(self._tables.taxonomy, degrees)]
         try:
             return [self._read_piece(attribute, piece)]
         except UnreadableValueError:
@@ -139,41 +124,27 @@ class ValueReader:
                 raise
         return [self._read_piece(attribute, part) for part in parts]
 
-    def _read_piece(self, attribute: str, piece: str) -> ValueMatch:
-        exact = sorted(self._lookup(attribute, piece))
-        if len(exact) > 1:
+    def _read_piece(self, attribute: str, piece: str) -> str:
+        values = sorted(self._lookup(attribute, piece))
+        if len(values) == 1:
+            return values[0]
+        if values:
             raise UnreadableValueError(
-                f"{piece!r} may stand for {' or '.join(exact)} of {attribute}"
+                f"{piece!r} may stand for {' or '.join(values)} of {attribute}"
             )
-        ranked = [(1.0, value) for value in exact] or self._rank(attribute, normalise(piece))
-        if ranked:
-            score, value = ranked[0]
-            lead = score - ranked[1][0] if len(ranked) > 1 else score
-            if score >= _LEAST_SCORE and lead >= _LEAST_LEAD:
-                score = round(score, 3)
-                return ValueMatch(attribute=attribute, text=piece, value=value, score=score)
-        nearest = f"; the nearest is {ranked[0][1]!r} ({ranked[0][0]:.2f})" if ranked else ""
-        raise UnreadableValueError(f"{piece!r} is no value of {attribute}{nearest}")
+        spellings = self._spellings[attribute]
+        near = nearest_name(normalise(piece), spellings, cutoff=0.6)
+        hint = f"; the nearest is {' or '.join(sorted(spellings[near]))!r}" if near else ""
+        raise UnreadableValueError(f"{piece!r} is no value of {attribute}{hint}")
 
-    def _rank(self, attribute: str, plain: str) -> list[tuple[float, str]]:
-        best: dict[str, float] = {}
-        for spelling, values in self._spellings[attribute].items():
-            shorter, longer = sorted((len(plain), len(spelling)))
-            if shorter >= max(_LEAST_LENGTH, longer / 3) and len(values) == 1:
-                value = next(iter(values))
-                best[value] = max(best.get(value, 0.0), similarity(plain, spelling))
-        return sorted(
-            ((score, value) for value, score in best.items()), key=lambda e: (-e[0], e[1])
-        )
-
-    def _read_number(self, attribute: str, text: str, unit: str) -> ValueMatch:
+    def _read_number(self, attribute: str, text: str, unit: str) -> str:
         degrees = self._degrees(attribute, text, unit)
         least, most = (float(self._definitions[attribute][name]) for name in ("min", "max"))
         if not least <= degrees <= most:
             raise UnreadableValueError(
                 f"{text!r} is out of range: expected {attribute} from {least:g} to {most:g} deg"
             )
-        return ValueMatch(attribute=attribute, text=text, value=f"{degrees:.6g}", score=1.0)
+        return f"{degrees:.6g}"
 
     def _degrees(self, attribute: str, text: str, unit: str) -> float:
         if _INEQUALITY.match(text.strip()):

@@ -49,7 +49,7 @@ def import_(
             metavar="COL=ATTRIBUTE",
             help=(
                 "Attribute of a column: study, title, authors, year or another attribute; - "
-                "ignores it; may be repeated. Other columns are matched by similarity."
+                "ignores it; may be repeated. Other columns are matched by their names."
             ),
         ),
     ] = None,
@@ -144,19 +144,11 @@ def _overrides(mapped: Sequence[str]) -> dict[str, str]:
 def _print(plan: ImportPlan) -> None:
     listed = plan.model_dump(mode="json")
     mapping = listed["mapping"]
-    columns = ("column", "target", "score", "how")
-    emit(mapping["matches"], columns, Format.TABLE, title=f"Columns of {plan.source}")
+    emit(mapping["matches"], ("column", "target"), Format.TABLE, title=f"Columns of {plan.source}")
     if mapping["ignored"]:
         say(f"left aside: {', '.join(mapping['ignored'])}")
     cells = [*listed["differences"], *listed["confirmed"]]
     emit(cells, CELLS, Format.TABLE, title=f"{len(cells)} cells that differ")
-    if listed["guesses"]:
-        emit(
-            listed["guesses"],
-            tuple(listed["guesses"][0]),
-            Format.TABLE,
-            title="Values read by similarity: check them",
-        )
     if listed["withdrawn"]:
         title = "Rows of ours that rest on a replaced value, and go with it"
         emit(listed["withdrawn"], ("table", "study", "value", "note"), Format.TABLE, title=title)

@@ -67,7 +67,7 @@ def test_empty_columns_behind_the_last_named_one_are_left_out(tmp_path: Path) ->
 def test_a_list_is_cut_outside_parentheses_and_what_is_not_stated_left_out(
     attribute: str, text: str, expected: list[str], tables: survey_data.SurveyTables
 ) -> None:
-    assert [match.value for match in ValueReader(tables).read(attribute, text)] == expected
+    assert ValueReader(tables).read(attribute, text) == expected
 
 
 @pytest.fixture(scope="module")
@@ -83,12 +83,9 @@ def finder(tables: survey_data.SurveyTables) -> StudyFinder:
     return StudyFinder(replace(tables, studies=studies))
 
 
-@pytest.mark.parametrize(
-    "title", ["Fuzzy image processing in sun sensors", "Fuzzy imag processing in sunn sensors"]
-)
-def test_a_title_of_two_studies_is_not_guessed(title: str, finder: StudyFinder) -> None:
+def test_a_title_of_two_studies_is_not_guessed(finder: StudyFinder) -> None:
     with pytest.raises(StudyNotFoundError, match="may mean Mobasser2001 or Other2001"):
-        finder.find(title=title)
+        finder.find(title="Fuzzy image processing in sun sensors")
 
 
 def test_an_import_beside_a_damaged_manifest_writes_nothing(copy: Any) -> None:
