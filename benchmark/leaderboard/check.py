@@ -2,8 +2,7 @@
 
 First what needs no measuring: the page follows from the record, and the record is of the code as
 it is. Where code of datasets has changed their first samples are compared, and where those moved
-under the same version that is the answer. Else everything is measured again from nothing, with this
-machine's numerical kernels and with those of an older processor.
+under the same version that is the answer. Else everything is measured again from nothing.
 """
 
 from __future__ import annotations
@@ -13,10 +12,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from benchmark.contract import Cell
-from benchmark.datasets.pins import Pin, Place, bounds_agree
 from benchmark.experiments.sweeps import Sweeps
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
@@ -33,16 +31,12 @@ from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
 from benchmark.running.experiment import RecordedExperiment, experiments, list_due
-from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.differences import differences
 from benchmark.sweeps.record import RECORD as SWEEPS
 from benchmark.sweeps.record import swept
 from files.atomic import temporary_directory
 from survey_data import facts_manifest
-
-if TYPE_CHECKING:
-    from benchmark.datasets.preset import Preset
 
 #: On the pinned environment scores are identical. Elsewhere another order of a sum changes last
 #: bits, which a fit may amplify a million times before it is refused.
@@ -52,28 +46,22 @@ _SAMPLES_TOLERANCE = 1.5
 
 _RING_COLUMNS = frozenset(ring.column for ring in RINGS)
 
-NATIVE, OLDER = "native", "older"
-KERNELS = (NATIVE, OLDER)
-
 
 @dataclass(frozen=True, order=True)
 class Difference:
     """One place where the committed record is not what it should be.
 
     `cell` is ``dataset/condition/extractor/model/column`` and the like, `committed` what stands
-    there, `measured` what should; `kernels` are those it was measured with, empty where nothing
-    was.
+    there, `measured` what should.
     """
 
     file: str
     cell: str
     committed: str
     measured: str
-    kernels: str = ""
 
     def __str__(self) -> str:
-        how = f" ({self.kernels} kernels)" if self.kernels else ""
-        return f"{self.file}: {self.cell} is {self.committed}, should be {self.measured}{how}"
+        return f"{self.file}: {self.cell} is {self.committed}, should be {self.measured}"
 
 
 def check(
@@ -82,17 +70,14 @@ def check(
     progress: ProgressCallback | None = None,
     *,
     stored_only: bool = False,
-    kernels: Collection[str] = KERNELS,
     parts: Parts | None = None,
 ) -> list[Difference]:
     """Compare the committed record with what it follows from; an empty list is a pass.
 
     `stored_only` leaves out generating and measuring: only whether the files agree with each other,
     with the versions and sizes of the data sets and with the code as it is, and the page with them.
-    `kernels` to measure with are ``native``, ``older`` or both; `parts` are what is installed by
-    default, and what older kernels take. StoreError, ComponentsError when a stored file cannot be
-    read; NoOlderKernelsError, OlderRunError when there are no older kernels, or their process
-    failed; RunInterruptedError on Ctrl-C, nothing is kept.
+    `parts` are what is installed by default. StoreError, ComponentsError when a stored file cannot
+    be read; RunInterruptedError on Ctrl-C, nothing is kept.
     """
     store = Store(directory)
     known = parts or installed_parts()
@@ -103,48 +88,38 @@ def check(
     moved = list(_moved_heads(store, known))
     if moved:  # every number of these datasets is another: there is no point in measuring it
         return [*moved, *found]
-    for kind in kernels:
-        if kind == OLDER:
-            found += measured_again(
-                store, lambda directory: update_with_older_kernels(directory, workers), kind
-            )
-        else:
-            measure = partial(update, workers=workers, progress=progress, parts=parts)
-            found += measured_again(store, measure, kind)
+    found += measured_again(store, partial(update, workers=workers, progress=progress, parts=parts))
     return list(dict.fromkeys(found))
 
 
 def differences_of_files(
     store: Store, parts: Parts, wanted: Collection[Cell]
 ) -> Iterator[Difference]:
-    """Find what shows without measuring: changes by hand, contradictions, other code or cells."""
+    """Find what shows without measuring: changes by hand, other code or cells."""
     yield from by_hand(store)
-    yield from (Difference(*pair) for pair in contradictions(store, parts))
     yield from outdated(store, parts, wanted)
 
 
-def measured_again(
-    store: Store, measure: Callable[[Path], object], kernels: str = NATIVE
-) -> list[Difference]:
+def measured_again(store: Store, measure: Callable[[Path], object]) -> list[Difference]:
     """Compare a record with the one that `measure` makes in an empty directory."""
     try:
         with temporary_directory() as temporary:
             measure(temporary)
-            return compare(store, Store(temporary), kernels)
+            return compare(store, Store(temporary))
     except KeyboardInterrupt as interrupted:
         raise RunInterruptedError(
             "interrupted; a check keeps nothing of what it measured"
         ) from interrupted
 
 
-def compare(committed: Store, measured: Store, kernels: str = "") -> list[Difference]:
+def compare(committed: Store, measured: Store) -> list[Difference]:
     """Compare two records: accuracy within the tolerance, all else that is no digest exactly."""
     found = [
-        *_moved_data(committed, measured, kernels),
-        *compare_scores(committed.scores(), measured.scores(), _counts(measured), kernels),
+        *_moved_data(committed, measured),
+        *compare_scores(committed.scores(), measured.scores(), _counts(measured)),
     ]
     for place, one, other in differences(swept(committed.directory), swept(measured.directory)):
-        found.append(Difference(SWEEPS.name, place, one, other, kernels))
+        found.append(Difference(SWEEPS.name, place, one, other))
     return found
 
 
@@ -152,7 +127,6 @@ def compare_scores(
     committed: Mapping[Cell, Row],
     measured: Mapping[Cell, Row],
     samples: Mapping[tuple[str, str], int],
-    kernels: str = "",
 ) -> list[Difference]:
     """Compare scores by cell; `samples` of the test split are what a share is of."""
     found = []
@@ -161,13 +135,13 @@ def compare_scores(
         known, row = committed.get(cell), measured.get(cell)
         if known is None or row is None:
             states = ("absent", "measured") if known is None else ("present", "not measured")
-            found.append(Difference(file, f"{cell}/row", *states, kernels))
+            found.append(Difference(file, f"{cell}/row", *states))
             continue
         count = samples.get((cell.dataset, cell.condition), 1)
         for column, value in row.items():
             if not _close(column, known.get(column), value, row, count):
                 pair = str(known.get(column)), str(value)
-                found.append(Difference(file, f"{cell}/{column}", *pair, kernels))
+                found.append(Difference(file, f"{cell}/{column}", *pair))
     return found
 
 
@@ -216,7 +190,7 @@ def _moved_heads(store: Store, parts: Parts) -> Iterator[Difference]:
             )
 
 
-def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Difference]:
+def _moved_data(committed: Store, measured: Store) -> Iterator[Difference]:
     """Find data and bounds that are not as pinned, each named by its dataset."""
     pinned, made = committed.pins(), measured.pins()
     file = committed.pins_path.name
@@ -225,13 +199,13 @@ def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Dif
         cell = "/".join(place)
         if one is None or other is None:
             states = ("absent", "pinned") if one is None else ("present", "no such data")
-            yield Difference(file, cell, *states, kernels)
+            yield Difference(file, cell, *states)
         elif one.version != other.version:
             pair = f"version {one.version}", f"version {other.version}"
-            yield Difference(file, cell, *pair, kernels)
+            yield Difference(file, cell, *pair)
         elif said := one.difference(other):
             pair = f"version {one.version}", f"{said}: the data changed and the version did not"
-            yield Difference(file, cell, *pair, kernels)
+            yield Difference(file, cell, *pair)
 
 
 def outdated(store: Store, parts: Parts, wanted: Collection[Cell]) -> Iterator[Difference]:
@@ -296,87 +270,3 @@ def _derive(store: Store) -> Iterator[Difference]:
             return
     if text != expected:
         yield Difference(PAGE, "file", f"{len(here)} lines", f"{len(should)} lines")
-
-
-#: What two roundings to five digits and that of their quotient can add up to.
-_ROUNDED = 1.6e-4
-
-#: (file, cell, what stands there, what should)
-Told = tuple[str, str, str, str]
-
-
-def contradictions(store: Store, parts: Parts) -> Iterator[Told]:
-    """Yield what cannot be so: file, cell, what stands there and what should, in their order.
-
-    A bound stands in the pins and again in every score of a pipeline that answers all samples; a
-    ratio stands beside what it is a ratio of; sizes and versions are known of the data sets. A
-    number that was changed in one of these places contradicts another.
-    """
-    pins, scores = store.pins(), store.scores()
-    yield from _of_pins(store.pins_path.name, pins, parts)
-    yield from _of_bounds(store.pins_path.name, pins, scores)
-    for cell, row in scores.items():
-        for column, stands, should in _of_ratios(row):
-            yield f"scores/{cell.dataset}.csv", f"{cell}/{column}", stands, should
-
-
-def _of_pins(file: str, pins: Mapping[Place, Pin], parts: Parts) -> Iterator[Told]:
-    sizes = {name: _sizes(preset) for name, preset in parts.presets.items()}
-    for place, pin in pins.items():
-        cell = "/".join(place)
-        preset = parts.presets.get(pin.dataset)
-        if preset is None:  # named elsewhere: it is not planned
-            continue
-        if pin.version != preset.version:
-            yield file, f"{cell}/version", str(pin.version), str(preset.version)
-        size = sizes[pin.dataset].get(pin.split)
-        if size is not None and pin.n != size:
-            yield file, f"{cell}/n", str(pin.n), str(size)
-        tests = pins.get((pin.dataset, pin.condition, "test"))
-        if size is None and pin.split == "repeat" and tests is not None:
-            repeated = len(preset.repeats.pose_indices(tests.n)) * preset.repeats.passes
-            if pin.n != repeated:
-                yield file, f"{cell}/n", str(pin.n), f"{repeated}, as of {tests.n} test samples"
-
-
-def _sizes(preset: Preset) -> dict[str, int]:
-    """Return how many samples each split has; nothing for a preset whose directions say nothing."""
-    directions: Any = getattr(preset, "directions", None)
-    if directions is None:
-        return {}
-    sizes = {split: int(about["samples"]) for split, about in directions.card().items()}
-    return {
-        **sizes,
-        "repeat": len(preset.repeats.pose_indices(sizes["test"])) * preset.repeats.passes,
-    }
-
-
-def _of_bounds(file: str, pins: Mapping[Place, Pin], scores: Mapping[Cell, Row]) -> Iterator[Told]:
-    """Compare pinned bounds with those of the scores over the same samples."""
-    over_all: dict[Place, dict[Cell, float]] = {}
-    for cell, row in scores.items():
-        place = (cell.dataset, cell.condition, "test")
-        answers_all = row["status"] == "ok" and row["availability"] == 1.0 and cell.unit == 0
-        if answers_all and row["bound_deg"] is not None and place in pins:
-            over_all.setdefault(place, {})[cell] = row["bound_deg"]
-    for place, bounds in over_all.items():
-        pinned = pins[place].bound_deg
-        unlike = {cell: bound for cell, bound in bounds.items() if not bounds_agree(pinned, bound)}
-        stands = "absent" if pinned is None else f"{pinned:g}"
-        first = next(iter(bounds.values()))
-        if len(unlike) == len(bounds) and all(
-            bounds_agree(first, bound) for bound in bounds.values()
-        ):
-            yield file, f"{'/'.join(place)}/bound_deg", stands, f"{first:g}, as the scores have it"
-            continue
-        for cell, bound in unlike.items():
-            named = f"scores/{cell.dataset}.csv", f"{cell}/bound_deg"
-            yield *named, f"{bound:g}", f"{stands}, as pinned"
-
-
-def _of_ratios(row: Row) -> Iterator[tuple[str, str, str]]:
-    for ratio, bound in (("over_bound", "bound_deg"), ("over_bound_unit", "bound_unit_deg")):
-        over, of, by = row[ratio], row["rms_deg"], row[bound]
-        complete = over is not None and of is not None and by
-        if complete and not math.isclose(over, of / by, rel_tol=_ROUNDED):
-            yield ratio, f"{over:g}", f"{of / by:.5g}, the ratio of rms_deg and {bound}"

@@ -1,23 +1,13 @@
-"""The leaderboard as files: JSON, CSV and HTML of everything, and a page of the best in Markdown.
-
-Only the page of the best is committed; the others are derived where they are wanted.
-"""
+"""The committed page of the leaderboard: the best of each architecture, in Markdown."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Collection, Iterator, Mapping
-from itertools import groupby
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
-from benchmark.results.csv_tables import format_cell, text_of
-from files.atomic import replace_file
-from files.csv_writing import escape_formulas
-from registry.taxonomy import taxonomy_row
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -25,43 +15,20 @@ Row = Mapping[str, Any]
 #: Name of the committed page.
 PAGE = "leaderboard.md"
 
-_TEMPLATES = Path(__file__).parent / "templates"
 _SHARES = ("availability", "false_detection_rate")
-
-#: Columns of the HTML tables; the JSON and CSV files have all.
-SHOWN = {
-    "rank": "#",
-    "extractor": "Extractor",
-    "model": "Model",
+#: Columns of the tables by data set, and their headings.
+_COLUMNS = {
     "best_of_extractor": "Best of extractor",
     "studies": "Studies",
+    "rank": "#",
     "own_error_deg": "Own error (deg)",
     "units": "Units (deg)",
     "on_bench_deg": "On a bench (deg)",
-    "rms_deg": "RMS, standard unit (deg)",
-    "median_deg": "Median (deg)",
-    "p997_deg": "99.7 % (deg)",
-    "repeatability_deg": "Repeatability (deg)",
-    "bound_deg": "Bound (deg)",
     "over_bound": "RMS / bound",
-    "over_bound_se": "±",
-    "bound_unit_deg": "Bound, unit unknown (deg)",
-    "over_bound_unit": "RMS / that",
+    "repeatability_deg": "Repeatability (deg)",
     "availability": "Answered",
     "false_detection_rate": "False Suns",
 }
-_BEST = (
-    *(
-        "best_of_extractor",
-        "studies",
-        "rank",
-        "own_error_deg",
-        "units",
-        "on_bench_deg",
-        "over_bound",
-    ),
-    *("repeatability_deg", *_SHARES),
-)
 #: Pipelines that are not the best of their extractor are on the page down to this rank.
 _RANKS = 3
 
@@ -83,7 +50,7 @@ LEGEND = (
 )
 
 
-def format_number(column: str, row: Row) -> str:
+def _format_number(column: str, row: Row) -> str:
     """Spell a column of a row for people: four significant digits, a dash for none."""
     if column in _SPELT:
         return _SPELT[column](row)
@@ -119,12 +86,11 @@ def _digits(value: float) -> str:
 
 def page(board: Board) -> str:
     """Write the best of each architecture, and of each extractor on each data set, in Markdown."""
-    names = [SHOWN[column] for column in _BEST]
     best = architectures(board)
     about = (
         "Of each data set's first condition the best pipeline of each extractor; behind them the "
         f"others of the first {_RANKS} ranks. All pipelines and conditions: `sunatlas leaderboard "
-        "render --out DIRECTORY`, or the page and the API of `sunatlas serve`."
+        "--dataset NAME`, or the page and the API of `sunatlas serve`."
     )
     lines = [
         "# Leaderboard",
@@ -143,130 +109,14 @@ def page(board: Board) -> str:
         "",
         about,
         "",
-        f"| Data set | Pipeline | {' | '.join(names)} |",
-        "| --- | --- |" + " ---: |" * len(names),
+        f"| Data set | Pipeline | {' | '.join(_COLUMNS.values())} |",
+        "| --- | --- |" + " ---: |" * len(_COLUMNS),
     ]
     for dataset, rows in first_boards(board):
         for row in rows:
             listed = row["rank"] is not None and not (row["twin_of"] or row["folded"])
             if listed and (row["best_of_extractor"] or row["rank"] <= _RANKS):
-                texts = (format_number(column, row) for column in _BEST)
+                texts = (_format_number(column, row) for column in _COLUMNS)
                 pipeline = f"{row['extractor']} + {row['model']}"
                 lines.append(f"| {dataset['name']} | {pipeline} | {' | '.join(texts)} |")
     return "\n".join(lines) + "\n"
-
-
-def to_json(board: Board) -> str:
-    """Write everything as JSON whose lists of objects have an item a line."""
-    return _one_row_a_line(board) + "\n"
-
-
-def _one_row_a_line(value: object) -> str:
-    if isinstance(value, list) and value and isinstance(value[0], Mapping):
-        return "[\n" + ",\n".join(_one_row_a_line(item) for item in value) + "\n]"
-    if isinstance(value, Mapping) and any(isinstance(item, list) for item in value.values()):
-        fields = (f"{json.dumps(name)}: {_one_row_a_line(item)}" for name, item in value.items())
-        return "{" + ", ".join(fields) + "}"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
-
-
-def to_csv(board: Board) -> str:
-    """Write every row and column as CSV; lists joined by semicolons."""
-    rows = [row for dataset in board["datasets"] for row in dataset["rows"]]
-    leading = ("rank", "tied", "dataset", "condition", "extractor", "model")
-    every = dict.fromkeys(column for row in rows for column in row)
-    columns = [*leading, *(column for column in every if column not in leading)]
-    joined = (
-        {**row, "unit_rms_deg": _join(row), "studies": ";".join(row["studies"])} for row in rows
-    )
-    return text_of(columns, map(taxonomy_row, joined))
-
-
-def _join(row: Row) -> str | None:
-    errors = row["unit_rms_deg"]
-    return None if errors is None else ";".join(format_cell(error) for error in errors)
-
-
-def sweeps_csv(board: Board) -> str:
-    """Write every row and column of the sweeps as CSV."""
-    rows = board["sweeps"]
-    columns = dict.fromkeys(("series", "sweep", "point", "extractor"))
-    columns |= dict.fromkeys(column for row in rows for column in row)
-    return text_of(list(columns), map(taxonomy_row, rows))
-
-
-def to_html(board: Board, *, marked: Collection[tuple[str, str]] = (), note: str = "") -> str:
-    """Write every table as a page that needs nothing beside itself.
-
-    `marked` are extractor and model of pipelines whose rows are marked, `note` is a sentence below
-    the legend.
-    """
-    import jinja2  # noqa: PLC0415 - only writing the page needs it
-
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(_TEMPLATES),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-        keep_trailing_newline=True,
-    )
-    template = environment.get_template("leaderboard.html")
-    return template.render(
-        tables=list(_tables(board, marked)),
-        note=note,
-        headings=SHOWN,
-        legend=LEGEND,
-    )
-
-
-def _tables(
-    board: Board, marked: Collection[tuple[str, str]] = ()
-) -> Iterator[tuple[Mapping[str, Any], list[dict[str, Any]]]]:
-    """Give each dataset with its conditions; of each, rows of (column, text) that share its id."""
-    for dataset in board["datasets"]:
-        conditions = [
-            {
-                "name": condition,
-                "rows": [
-                    {
-                        "cell": "/".join(
-                            str(row[name])
-                            for name in ("dataset", "condition", "extractor", "model")
-                        ),
-                        "reason": row["reason"],
-                        "marked": (row["extractor"], row["model"]) in marked,
-                        "behind": not row["best_of_extractor"],
-                        "columns": [(column, format_number(column, row)) for column in SHOWN],
-                    }
-                    for row in rows
-                ],
-            }
-            for condition, rows in groupby(dataset["rows"], key=lambda row: row["condition"])
-        ]
-        yield dataset, conditions
-
-
-#: Files that can be derived, and how.
-FORMATS: Mapping[str, Callable[[Board], str]] = {
-    "leaderboard.json": to_json,
-    "leaderboard.csv": to_csv,
-    PAGE: page,
-    "leaderboard.html": to_html,
-    "sweeps.csv": sweeps_csv,
-}
-
-
-def render(board: Board, out: Path, *, for_spreadsheets: bool = False) -> list[Path]:
-    """Write every derived file to a directory, each whole or not at all; returns their paths.
-
-    `for_spreadsheets`: no spreadsheet shall run a cell of the CSV files.
-    """
-    paths = []
-    for name, made in FORMATS.items():
-        text = made(board)
-        if for_spreadsheets and name.endswith(".csv"):
-            text = escape_formulas(text)
-        replace_file(out / name, text)
-        paths.append(out / name)
-    return paths

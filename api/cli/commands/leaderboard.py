@@ -1,10 +1,8 @@
-"""`sunatlas leaderboard`: the published results shown, brought up to date, checked or rendered."""
+"""`sunatlas leaderboard`: the published results shown, brought up to date or checked."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from enum import StrEnum
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -50,23 +48,10 @@ WIDEST_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
     *("own_error_deg", "availability", "false_detection_rate"),
 )
-_OF_CHECK = frozenset({"--check", "--stored", "--kernels", "--workers", "--format", "--safe"})
-DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
+_OF_CHECK = frozenset({"--check", "--stored", "--workers", "--format", "--safe"})
+DIFFERENCES = ("file", "cell", "committed", "measured")
 
 Row = Mapping[str, Any]
-
-
-class Kernels(StrEnum):
-    """Numerical kernels that a check measures with."""
-
-    NATIVE = "native"
-    OLDER = "older"
-    BOTH = "both"
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names that `benchmark.leaderboard.check.check` takes."""
-        return ("native", "older") if self is Kernels.BOTH else (self.value,)
 
 
 @app.callback(invoke_without_command=True)
@@ -124,16 +109,6 @@ def leaderboard(
         bool,
         typer.Option("--stored", help="With --check: compare stored results, measure nothing."),
     ] = False,
-    kernels: Annotated[
-        Kernels | None,
-        typer.Option(
-            help=(
-                "With --check: kernels of this processor, an older one, or both (default); sensors "
-                "of single studies are measured with this processor's."
-            ),
-            show_default=False,
-        ),
-    ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     form: FormatOption = Format.TABLE,
 ) -> None:
@@ -158,9 +133,9 @@ def leaderboard(
     if asked and listing:
         raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
-        _check(workers, form, (kernels or Kernels.BOTH).names, stored_only=stored)
-    elif stored or kernels:
-        raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
+        _check(workers, form, stored_only=stored)
+    elif stored:
+        raise WrongCallError("--stored goes with --check")
     elif field is not None and max_error is not None:
         raise WrongCallError("--field and --max-error are two questions; ask one at a time")
     elif overview:
@@ -181,9 +156,8 @@ def _refuse_beside_check(options: list[str], *, check: bool) -> None:
             f"--check takes all that is published: leave out {', '.join(narrowing)}; "
             "`sunatlas verify` measures a part"
         )
-    idle = [name for name in ("--workers", "--kernels") if name in options]
-    if check and idle and "--stored" in options:
-        raise WrongCallError(f"--stored measures nothing: leave out {', '.join(idle)}")
+    if check and {"--workers", "--stored"}.issubset(options):
+        raise WrongCallError("--stored measures nothing: leave out --workers")
 
 
 def _require_no_options(context: typer.Context) -> None:
@@ -217,33 +191,6 @@ def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
 
 
 @app.command()
-def render(
-    out: Annotated[
-        Path, typer.Option(help="Output directory.", file_okay=False, show_default=False)
-    ],
-    *,
-    safe: Annotated[
-        bool,
-        typer.Option(
-            "--safe", help="Escape cells of the CSV files that a spreadsheet would run as formulas."
-        ),
-    ] = False,
-) -> None:
-    """Write the leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
-
-    Files of the same name are replaced. Nothing is measured.
-    """
-    from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from benchmark.leaderboard import pages  # noqa: PLC0415 - as above
-
-    board = knowledge().measurements.leaderboard
-    if not board["datasets"]:
-        raise WrongCallError(f"nothing is published in {PUBLISHED}; `sunatlas leaderboard update`")
-    for path in pages.render(board, out, for_spreadsheets=safe):
-        typer.echo(str(path))
-
-
-@app.command()
 def times(
     *,
     again: Annotated[
@@ -269,12 +216,12 @@ def times(
     )
 
 
-def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
+def _check(workers: int, form: Format, *, stored_only: bool) -> None:
     from benchmark.leaderboard import check as checking  # noqa: PLC0415 - slow
     from benchmark.leaderboard import study_record  # noqa: PLC0415 - slow
 
     found = [
-        *checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels),
+        *checking.check(PUBLISHED, workers, stored_only=stored_only),
         *study_record.check(workers=workers, stored_only=stored_only),
     ]
     rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
@@ -286,8 +233,7 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
     how = (
         "the files agree with each other and the code"
         if stored_only
-        else f"data sets of the leaderboard measured again with {' and '.join(kernels)} kernels, "
-        "sensors of single studies with native ones"
+        else "everything was measured again"
     )
     typer.echo(f"every published number holds: {how}", err=True)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,8 +19,6 @@ from api.schema import words
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
 from benchmark.leaderboard import candidate
-from benchmark.leaderboard.pages import to_html
-from files.atomic import replace_file
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -50,14 +47,6 @@ def rank(
             autocompletion=complete(words.DatasetName), help="Data set.", show_default=False
         ),
     ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="HTML page to write; by default out/ALGORITHM-DATASET.html.",
-            dir_okay=False,
-            show_default=False,
-        ),
-    ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
@@ -67,8 +56,7 @@ def rank(
     The algorithm is an extractor, model or compensation, given by name or file. It must pass the
     common tests; otherwise the failures are printed and nothing is measured. Its pipelines are then
     scored under the nominal condition; all other rows come from the published record. The
-    leaderboard marks the new rows and is also written as an HTML page. New scores are kept in the
-    local store (see --store).
+    leaderboard marks the new rows. New scores are kept in the local store (see --store).
     """
     name = name_of(algorithm)
     result = check_contract(name)
@@ -87,8 +75,6 @@ def rank(
         typer.echo(f"contract: {result.ran} checks passed", err=True)
     record, work = stores_of(store)
     ranked = candidate.rank(name, dataset, record, work, workers=workers)
-    page = out or Path("out") / f"{name}-{dataset}.html"
-    replace_file(page, to_html(ranked.board, marked=ranked.pipelines, note=ranked.scope))
     rows = [{**row, "new": MARK if ranked.has(row) else None} for row in ranked.rows]
     if form is Format.TABLE:
         shown = [row for row in rows if row["new"] or (row["best_of_extractor"] and row["rank"])]
@@ -105,4 +91,3 @@ def rank(
     for row in failed:
         typer.echo(f"no score: {row['extractor']} + {row['model']}: {row['reason']}", err=True)
     typer.echo(f"{ranked.measured} cells measured now, kept in {work.directory}", err=True)
-    typer.echo(f"page: {page}", err=True)

@@ -47,8 +47,6 @@ def odd(tmp_path):
         ("claims --search=", 2, "--search: "),
         ("claims C04 --search x", 2, "an ID stands alone"),
         ("compile x", 2, "got x"),
-        ("leaderboard render", 2, "'--out'"),
-        ("leaderboard render --out {odd}/file", 2, r"{odd}/file\b.*directory"),
         ("plan --store {odd}/file", 2, r"--store: {odd}/file\b.*directory"),
         ("benchmark --dataset pd-slit --extractor bcm", 1, r"pd-slit, bcm: .*frames"),
         ("leaderboard --field 25", 2, "25; expected one of 10, 20"),

@@ -5,21 +5,16 @@ Measuring has tests of its own (`test_cli_measuring.py`); here a stand-in tells 
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
-from api.cli import asking
 from api.cli.command_line import app
-from api.service.knowledge import Knowledge
 from benchmark.leaderboard import check, study_record
 from benchmark.leaderboard.check import Difference
-from benchmark.leaderboard.pages import FORMATS
 
 DATASET = "qpd-maskless-pyramid"
 
@@ -31,7 +26,7 @@ def sunatlas(*arguments: object) -> Any:
 
 # ---- leaderboard --check
 
-DIFFERENT = Difference("scores/a.csv", "a/nominal/x/y/rms_deg", "1.0", "2.0", "older")
+DIFFERENT = Difference("scores/a.csv", "a/nominal/x/y/rms_deg", "1.0", "2.0")
 
 
 class Checked:
@@ -42,7 +37,7 @@ class Checked:
         self.asked: list[tuple[Any, ...]] = []
 
     def __call__(self, directory: Path, workers: int, **options: Any) -> list[Difference]:
-        self.asked.append((directory, workers, options["stored_only"], tuple(options["kernels"])))
+        self.asked.append((directory, workers, options["stored_only"]))
         return self.found
 
 
@@ -63,51 +58,13 @@ def test_a_check_that_finds_differences_fails_and_lists_them(checked: Checked) -
         "cell": "a/nominal/x/y/rms_deg",
         "committed": "1.0",
         "measured": "2.0",
-        "kernels": "older",
     }
     assert shown.stderr == (
         "sunatlas: 2 differences, the first: scores/a.csv: a/nominal/x/y/rms_deg is 1.0, should be "
-        "2.0 (older kernels)\n"
+        "2.0\n"
     )
     table = sunatlas("leaderboard", "--check")
     assert table.stdout.startswith("2 differences\n")
-
-
-# ---- leaderboard update, render, times
-
-
-@pytest.fixture
-def board(knowledge: Knowledge, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """What is published of one data set, and little else."""
-    whole = knowledge.measurements.leaderboard
-    one = next(found for found in whole["datasets"] if found["name"] == DATASET)
-    made: dict[str, Any] = {**whole, "datasets": [one], "sweeps": whole["sweeps"][:9]}
-    known = SimpleNamespace(measurements=SimpleNamespace(leaderboard=made))
-    monkeypatch.setattr(asking, "knowledge", lambda: known)
-    return made
-
-
-@pytest.mark.parametrize("safe", [False, True])
-def test_every_derived_file_is_written_and_named(
-    board: dict[str, Any], tmp_path: Path, safe: bool
-) -> None:
-    shown = sunatlas("leaderboard", "render", "--out", tmp_path, *(["--safe"] if safe else []))
-    assert shown.exit_code == 0, shown.stderr
-    assert shown.stdout.splitlines() == [str(tmp_path / name) for name in FORMATS]
-    assert {path.name for path in tmp_path.iterdir()} == set(FORMATS)
-    with (tmp_path / "leaderboard.csv").open(newline="", encoding="utf-8") as file:
-        assert len(list(csv.DictReader(file))) == len(board["datasets"][0]["rows"])
-
-
-def test_where_nothing_is_published_nothing_is_written(
-    board: dict[str, Any], tmp_path: Path
-) -> None:
-    board["datasets"] = []
-    shown = sunatlas("leaderboard", "render", "--out", tmp_path / "out")
-    assert shown.exit_code == 2
-    assert "nothing is published in" in shown.stderr
-    assert "`sunatlas leaderboard update`" in shown.stderr
-    assert not (tmp_path / "out").exists()
 
 
 # ---- leaderboard --dataset

@@ -1,9 +1,8 @@
-"""Records that differ, or contradict themselves, are told by file and cell without measuring."""
+"""Where two records differ is told by file and cell."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +11,12 @@ from fake_results import cell, components, numbers, pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark import datasets
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
-from benchmark.leaderboard.check import Difference, compare, compare_scores, contradictions
+from benchmark.leaderboard.check import Difference, compare, compare_scores
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS
-from benchmark.plan.parts import Parts
 from benchmark.results.store import Store
-
-NOWHERE = Parts({}, {}, {})
-PRESET = datasets.get("qpd-single-aperture")
-SIZES = {"calibration": 441, "test": 400}
 
 
 def stored(directory: Path, scores: Mapping[Cell, Any], *pins: Pin) -> Store:
@@ -49,8 +42,8 @@ def test_data_that_one_of_two_records_pins_otherwise_are_named(
     pins: tuple[list[Pin], list[Pin]], states: tuple[str, str] | None, tmp_path: Path
 ) -> None:
     one, other = (stored(tmp_path / str(k), {}, *each) for k, each in enumerate(pins))
-    expected = [Difference("pins.csv", "d/c/test", *states, "older")] if states else []
-    assert compare(one, other, "older") == expected
+    expected = [Difference("pins.csv", "d/c/test", *states)] if states else []
+    assert compare(one, other) == expected
 
 
 def test_scores_that_one_of_two_records_has_otherwise_are_named(tmp_path: Path) -> None:
@@ -71,53 +64,6 @@ def test_scores_that_one_of_two_records_has_otherwise_are_named(tmp_path: Path) 
         ("absent", "measured"),
     ]
     assert str(found[0]) == f"scores/d.csv: {cell('a')}/rms_deg is 0.5, should be 0.6"
-
-
-@pytest.mark.parametrize(
-    ("changed", "cells"),
-    [
-        ({}, {}),
-        ({"calibration": 440}, {"calibration/n": ("440", "441")}),
-        ({"test": 399}, {"test/n": ("399", "400")}),
-        ({"repeat": 7}, {"repeat/n": ("7", None)}),
-    ],
-)
-def test_sizes_are_those_of_the_directions_of_the_data_set(
-    changed: dict[str, int], cells: dict[str, tuple[str, str | None]], tmp_path: Path
-) -> None:
-    repeats = len(PRESET.repeats.pose_indices(SIZES["test"])) * PRESET.repeats.passes
-    sizes = {**SIZES, "repeat": repeats, **changed}
-    about = {"dataset": PRESET.name, "condition": "nominal", "version": PRESET.version}
-    store = stored(tmp_path, {}, *(pin(split, **about, n=n) for split, n in sizes.items()))
-    found = list(contradictions(store, Parts({PRESET.name: PRESET}, {}, {})))
-    assert found == [
-        ("pins.csv", f"{PRESET.name}/nominal/{name}", stands, should or str(repeats))
-        for name, (stands, should) in cells.items()
-    ]
-    assert list(contradictions(store, NOWHERE)) == [], "of a data set that is not installed"
-
-
-def test_a_bound_is_told_where_it_stands_alone(tmp_path: Path) -> None:
-    """Against those of the other scores it is theirs; against all of them it is the pin's."""
-    good, bad = numbers(0.5, bound_deg=0.25), numbers(0.5, bound_deg=0.26)
-    store = stored(tmp_path / "one", {cell("a"): good, cell("b"): bad}, pin())
-    assert list(contradictions(store, NOWHERE)) == [
-        ("scores/d.csv", f"{cell('b')}/bound_deg", "0.26", "0.25, as pinned")
-    ]
-    store = stored(tmp_path / "all", {cell("a"): bad, cell("b"): bad}, pin())
-    assert list(contradictions(store, NOWHERE)) == [
-        ("pins.csv", "d/c/test/bound_deg", "0.25", "0.26, as the scores have it")
-    ]
-    worse = numbers(0.5, bound_deg=0.27)
-    absent = replace(pin(), bound_deg=None)
-    store = stored(tmp_path / "none", {cell("a"): bad, cell("b"): worse}, absent)
-    assert list(contradictions(store, NOWHERE)) == [
-        ("scores/d.csv", f"{cell(name)}/bound_deg", bound, "absent, as pinned")
-        for name, bound in (("a", "0.26"), ("b", "0.27"))
-    ]
-    partly = numbers(0.5, bound_deg=0.3, availability=0.99)
-    store = stored(tmp_path / "partly", {cell("a"): good, cell("b"): partly}, pin())
-    assert list(contradictions(store, NOWHERE)) == [], "of other samples than all"
 
 
 CELL = Cell("fake-diodes", "noisy", "fake-currents", "fake-least-squares")
