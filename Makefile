@@ -104,7 +104,7 @@ sizes: ## lines of Python and of code, by part
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 	$(BIN)/python -m benchmark.experiments --workers $(WORKERS)
-	$(BIN)/python -m api.previews --publish
+	$(BIN)/python -m api.previews
 
 docs: $(DEVELOPING) ## renew the README's numbers and what blocks of docs/ print
 	$(BIN)/python -m api.docs.documentation

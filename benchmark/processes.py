@@ -23,8 +23,6 @@ from typing import NoReturn
 
 from files.locks import LockedError
 
-#: In the environment of a process that is to end with the one of this number.
-COORDINATOR = "SUNATLAS_COORDINATOR"
 #: Exit codes after Ctrl-C and after a request to terminate.
 INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
 _PR_SET_PDEATHSIG = 1
@@ -130,9 +128,8 @@ def call_to_end(main: Callable[[], int]) -> NoReturn:
     """Run a program to its end: as every `python -m` of the project does.
 
     SIGTERM is as Ctrl-C, exit codes are those of `exit_code`; where another process writes
-    already, one line on standard error says so. Ends with the process that it works for.
+    already, one line on standard error says so.
     """
-    end_with_coordinator()
     terminate_as_interrupt()
     try:
         status = main()
@@ -150,44 +147,23 @@ def call_to_end(main: Callable[[], int]) -> NoReturn:
     sys.exit(status)
 
 
-def for_coordinator() -> dict[str, str]:
-    """Return what to add to the environment of a process that is to end with this one."""
-    return {COORDINATOR: str(os.getpid())}
-
-
-def end_with_coordinator() -> None:
-    """Let this process end, tidily, with the one whose environment says that it works for it."""
-    number = os.environ.pop(COORDINATOR, "")
-    if number.isdecimal():
-        end_with(int(number), signal.SIGTERM)
-
-
-def end_with(coordinator: int, by: int = signal.SIGKILL) -> None:
-    """Let this process end when the process that started it does, or at once where it has."""
-    _tell_at_death(by)
-    if os.getppid() != coordinator:  # it ended before this could be asked for
-        os.kill(os.getpid(), by)
-    _watch(coordinator, by)
-
-
 def work_for(coordinator: int) -> None:
-    """Begin as a worker: ends with its coordinator, which alone answers Ctrl-C."""
+    """Begin as a worker: is killed with its coordinator, which alone answers Ctrl-C."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    end_with(coordinator)
-
-
-def _tell_at_death(by: int) -> None:
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
-            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(by), 0, 0, 0)
+            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
+    if os.getppid() != coordinator:  # it ended before this could be asked for
+        os.kill(os.getpid(), signal.SIGKILL)
+    _watch(coordinator)
 
 
 @cache
-def _watch(coordinator: int, by: int) -> None:
+def _watch(coordinator: int) -> None:
     def watch() -> None:
         while os.getppid() == coordinator:
             time.sleep(_EVERY_S)
-        os.kill(os.getpid(), by)
+        os.kill(os.getpid(), signal.SIGKILL)
 
     threading.Thread(target=watch, daemon=True, name="end with the coordinator").start()
 

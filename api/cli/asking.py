@@ -11,7 +11,6 @@ from api.service import asking
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem, Violation
-from api.user_cache import user_cache
 
 
 def ask(
@@ -32,7 +31,7 @@ def ask(
 @cache
 def knowledge() -> Knowledge:
     """Return what is known, loaded on first use."""
-    return Knowledge(working=user_cache())
+    return Knowledge()
 
 
 #: What a person calls a part of a path, and the command that lists what it can be.

@@ -26,7 +26,6 @@ from typer.core import TyperCommand, TyperGroup
 from api.cli.spreadsheets import offer
 from benchmark.processes import (
     INTERRUPTED,
-    end_with_coordinator,
     exit_code,
     say_interrupted,
     terminate_as_interrupt,
@@ -270,7 +269,6 @@ def sunatlas(
 
 def main() -> None:
     """Entry point of the console script."""
-    end_with_coordinator()
     terminate_as_interrupt()
     typer.main.get_command(app).main(prog_name="sunatlas")
 

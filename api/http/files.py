@@ -8,6 +8,7 @@ from fastapi import APIRouter, Path, Request, Response
 from starlette.staticfiles import StaticFiles
 
 from api.guide import site
+from api.previews import png
 from api.schema.words import DatasetName
 from api.service import datasets as service
 from api.web.answers import AnswerRoute, Columns, Picture, StrictRoute, link
@@ -38,12 +39,12 @@ _MISSING = _PAGE.format(
 
 
 @router.get("/{name}/preview.png", summary="Picture of a data set", response_class=Picture)
-def dataset_preview(known: Known, name: Name) -> Picture:
+def dataset_preview(name: Name) -> Picture:
     """Return a picture of nominal samples.
 
-    Frames, profiles, currents or events. The first request draws the picture and may take seconds.
+    Frames, profiles, currents or events.
     """
-    return Picture(known.pictures.png(name))
+    return Picture(png(name))
 
 
 @router.get(

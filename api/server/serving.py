@@ -1,12 +1,6 @@
-"""The service as the processes of a server make it: each for itself, set up by the environment.
-
-`SUNATLAS_WORKING` names the working directory, where pictures are kept that had to be drawn.
-"""
+"""The service as the processes of a server make it, each for itself."""
 
 from __future__ import annotations
-
-import os
-from pathlib import Path
 
 from fastapi import FastAPI
 
@@ -14,18 +8,10 @@ from api.server.app import create_app
 from api.service.knowledge import Knowledge
 from benchmark.processes import end_in_time
 
-WORKING = "SUNATLAS_WORKING"
-
 
 def application(*, loaded: bool = False) -> FastAPI:
-    """Make the service with what is known now.
-
-    Parameters
-    ----------
-    loaded : whether to load everything at once; else at start-up
-    """
-    working = os.environ.get(WORKING)
-    known = Knowledge(working=Path(working) if working else None)
+    """Make the service; `loaded` loads what is known at once, not at start-up."""
+    known = Knowledge()
     if loaded:
         known.load_all()
     return create_app(known)

@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 
 import survey_data
-from api.previews import Pictures
 from api.schema.advice import Advice
 from api.schema.table import columns_of
 from api.service.index.entries import entries
@@ -35,7 +33,6 @@ class Knowledge:
     Parameters
     ----------
     measurements : the published ones by default
-    working : directory where pictures that had to be drawn are kept; None keeps none
     survey : knowledge of the survey's studies, to which those that it does not map are added. What
         runs for a study of the survey is what it is without them: none of them is its relative
     """
@@ -43,11 +40,9 @@ class Knowledge:
     def __init__(
         self,
         measurements: Measurements | None = None,
-        working: Path | None = None,
         survey: Knowledge | None = None,
     ) -> None:
         self.measurements = Measurements() if measurements is None else measurements
-        self.working = working
         self._survey = survey
         self.edition: Choice = "survey" if survey is None else "all"
 
@@ -59,7 +54,7 @@ class Knowledge:
 
     @cached_property
     def _with_later(self) -> Knowledge:
-        return Knowledge(self.measurements, self.working, survey=self)
+        return Knowledge(self.measurements, survey=self)
 
     @cached_property
     def facts(self) -> Facts:
@@ -151,11 +146,6 @@ class Knowledge:
         names = columns_of(Advice)
         rows = table[list(names)].itertuples(index=False)
         return [dict(zip(names, map(str, row), strict=True)) for row in rows]
-
-    @cached_property
-    def pictures(self) -> Pictures:
-        """Pictures of the data sets."""
-        return Pictures(self.working)
 
     @cached_property
     def index(self) -> Index:

@@ -32,18 +32,7 @@ def main():
 
 call_to_end(main)
 """
-#: Starts PROGRAM as one that works for it, says its number, and waits to be killed.
-COORDINATOR = """
-import os, subprocess, sys, time
-from benchmark.processes import for_coordinator
-command = [sys.executable, "-c", sys.argv[1], sys.argv[2]]
-environment = {**os.environ, **for_coordinator()}
-with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as process:
-    process.stdout.readline()
-    print(process.pid, flush=True)
-    time.sleep(600)
-"""
-#: The same of workers of a pool, of which one works and the others wait.
+#: Says the numbers of the workers of a pool, of which one works and the others wait.
 POOL = """
 import os, sys, time
 from benchmark.running.workers import as_completed
@@ -132,16 +121,6 @@ def test_a_second_writer_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
-def test_a_program_ends_tidily_with_the_one_it_works_for_even_by_a_kill(tmp_path: Path) -> None:
-    coordinator = start(COORDINATOR, PROGRAM, tmp_path)
-    working = int(first_line(coordinator))
-    coordinator.kill()
-    coordinator.communicate()
-    assert ended(working)
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 @pytest.mark.parametrize(
     "number", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
 )
@@ -174,7 +153,6 @@ def calm(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "terminate_as_interrupt", lambda: None)
     monkeypatch.setattr(processes, "_told", [])
     monkeypatch.setattr(processes, "_said", threading.Event())
-    monkeypatch.delenv(processes.COORDINATOR, raising=False)
 
 
 @pytest.mark.usefixtures("calm")

@@ -17,7 +17,6 @@ from uvicorn.config import LOGGING_CONFIG
 from uvicorn.supervisors import Multiprocess
 
 from api.server import serving
-from api.user_cache import user_cache
 from benchmark.processes import take_time_to_end
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -59,7 +58,6 @@ def serve(
     (`sunatlas guide build`). Stop with Ctrl-C. With several workers, SIGHUP replaces them one after
     another. A socket that systemd hands over is served instead of --host and --port.
     """
-    os.environ[serving.WORKING] = str(user_cache())
     listener = inherited() or listen(host, port)
     with listener, contextlib.ExitStack() as stack:
         # Loaded before anything is served: damaged facts are refused in one sentence.
