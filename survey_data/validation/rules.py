@@ -1,7 +1,8 @@
-"""The rules a Data Package descriptor cannot say.
+"""The rules a Data Package descriptor cannot say, of the tables that commands change.
 
 Each rule reads typed frames (row i of a frame stands in row i + 2 of its file) and runs only
-where every table it needs could be read.
+where every table it needs could be read. What holds of the others, which are frozen, is tested
+(`tests/survey_data/test_frozen_tables.py`).
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import pandas as pd
 
 from survey_data.accuracy_classes import class_disagreements
 from survey_data.descriptor import primary_key
-from survey_data.findings.grammar import FindingSyntaxError, Vocabulary, parse_clause
+from survey_data.findings.grammar import Vocabulary
 from survey_data.importing.values import states_nothing
 from survey_data.nearest import one_of
 from survey_data.problems import Problem
@@ -24,8 +25,6 @@ from survey_data.validation import citations, provenance
 from survey_data.validation.cells import (
     Frames,
     Rule,
-    cells_of,
-    foreign,
     known_values,
     problem,
     texts,
@@ -184,44 +183,6 @@ def _printed_cells_agree(frames: Frames) -> Iterator[Problem]:
             yield problem("attributes", index, "value", message)
 
 
-def _printed_labels_are_known(frames: Frames) -> Iterator[Problem]:
-    """Check that the labels of the printed tables and of the assessment are of the taxonomy."""
-    vocabulary = Vocabulary(frames["taxonomy"]).values
-    known = {(attribute, value) for attribute, values in vocabulary.items() for value in values}
-    known |= {(of, alias) for _, (of, alias) in texts(frames["aliases"], "attribute", "alias")}
-    for index, (of, value) in texts(frames["study_tables"], "attribute", "value"):
-        if (of, value) not in known:
-            message = f"unknown taxonomy value {value!r} of {of}"
-            yield problem("study_tables", index, "value", message)
-    extractors = {value for of, value in known if of == "extractor"}
-    message = "unknown taxonomy value {!r} of extractor"
-    yield from foreign(frames, "feature_assessment", "extractor", extractors, message)
-
-
-def _absences_are_none(frames: Frames) -> Iterator[Problem]:
-    """Check that a study absent from a printed table has the label None, alone."""
-    label_of: dict[tuple[str, str], set[str]] = {}
-    rows = list(texts(frames["study_tables"], "study", "attribute", "value", "source"))
-    for _, (study, attribute, value, _) in rows:
-        label_of.setdefault((study, attribute), set()).add(value)
-    for index, (study, attribute, value, source) in rows:
-        table = {"model": "tab:mrlit", "extractor": "tab:felit"}.get(attribute, "")
-        if source.removeprefix("absent from ") != table:
-            message = f"the {attribute} table is {table}, not {source}"
-            yield problem("study_tables", index, "source", message)
-        if source.startswith("absent") != (value == "None"):
-            message = "absent from a table and the label None go together"
-            yield problem("study_tables", index, "value", message)
-        elif value == "None" and len(label_of[study, attribute]) > 1:
-            message = f"{study} has the label None beside others"
-            yield problem("study_tables", index, "value", message)
-    for index, (key,) in texts(frames["studies"], "key"):
-        for attribute in ("model", "extractor"):
-            if (key, attribute) not in label_of:
-                message = f"{key} has no {attribute} row in study_tables.csv"
-                yield problem("studies", index, "key", message)
-
-
 def _years_match_keys(frames: Frames) -> Iterator[Problem]:
     """Check that the year is the one in the key, and an unidentified study has no title."""
     for index, (key, year, title, identity) in texts(
@@ -235,70 +196,6 @@ def _years_match_keys(frames: Frames) -> Iterator[Problem]:
             yield problem("studies", index, "title", "identity unknown, yet a title")
         if identity == "confirmed" and not title:
             yield problem("studies", index, "title", "identity confirmed, yet no title")
-
-
-def _cited_keys_exist(frames: Frames) -> Iterator[Problem]:
-    """Check keys of claims and case studies against the studies and the other cited keys."""
-    known = cells_of(frames, "studies", "key")
-    cited = cells_of(frames, "references", "key")
-    for index, (key,) in texts(frames["references"], "key"):
-        if key in known:
-            yield problem("references", index, "key", f"{key} is a mapped study")
-    for table, name in (("claims", "study"), ("feature_assessment", "case_study")):
-        yield from foreign(frames, table, name, known | cited, "no study and no reference {!r}")
-
-
-def _claim_sections_exist(frames: Frames) -> Iterator[Problem]:
-    """Check that a claim's section is one the taxonomy files a value under."""
-    known = cells_of(frames, "taxonomy", "survey_section")
-    message = "no taxonomy value has the section {!r}"
-    yield from foreign(frames, "claims", "section", known, message)
-
-
-def _assessment_is_full(frames: Frames) -> Iterator[Problem]:
-    """Check that every extractor is assessed by every property, with one case study."""
-    frame = frames["feature_assessment"]
-    cells = list(texts(frame, "extractor", "property", "case_study"))
-    properties = dict.fromkeys(cell[1] for _, cell in cells)
-    held: dict[str, set[str]] = {}
-    case_study: dict[str, str] = {}
-    last: dict[str, int] = {}
-    for index, (extractor, name, study) in cells:
-        held.setdefault(extractor, set()).add(name)
-        last[extractor] = index
-        if case_study.setdefault(extractor, study) != study:
-            message = f"{extractor} has two case studies, {case_study[extractor]} and {study}"
-            yield problem("feature_assessment", index, "case_study", message)
-    for extractor, names in held.items():
-        for name in properties:
-            if name not in names:
-                message = f"{extractor} has no row for the property {name!r}"
-                yield problem("feature_assessment", last[extractor], "property", message)
-
-
-def _accuracy_classes_tile(frames: Frames) -> Iterator[Problem]:
-    """Check that the accuracy classes cover every angle once; other values have no limits."""
-    frame = frames["taxonomy"]
-    limits = [
-        (row["min_deg"], row["max_deg"], index, row["attribute"] == "accuracy")
-        for index, row in enumerate(frame.to_dict("records"))
-    ]
-    for least, most, index, is_class in limits:
-        if not is_class and not (math.isnan(least) and math.isnan(most)):
-            yield problem("taxonomy", index, "min_deg", "only accuracy classes have limits")
-    upper = 0.0
-    classes = sorted((entry for entry in limits if entry[3]), key=lambda entry: entry[0])
-    for least, most, index, _ in classes:
-        if least != upper:
-            message = f"accuracy classes must follow one another: expected {upper!r}, got {least!r}"
-            yield problem("taxonomy", index, "min_deg", message)
-        upper = math.inf if math.isnan(most) else most
-        if upper <= least:
-            message = f"expected more than {least!r}, got {most!r}"
-            yield problem("taxonomy", index, "max_deg", message)
-    if classes and not math.isinf(upper):
-        message = "the coarsest accuracy class must be open upwards"
-        yield problem("taxonomy", classes[-1][2], "max_deg", message)
 
 
 def _classes_keep_their_limits(frames: Frames) -> Iterator[Problem]:
@@ -324,45 +221,6 @@ def _kinds_have_a_number(frames: Frames) -> Iterator[Problem]:
         if value and number is not None and (study, number) not in known:
             message = f"{study} has a kind and no {number}"
             yield problem("attributes", index, "attribute", message)
-
-
-def _findings_parse(frames: Frames) -> Iterator[Problem]:
-    """Check that a finding has clauses, which keep the grammar and name known values."""
-    vocabulary = Vocabulary(frames["taxonomy"])
-    tested: dict[str, int] = {}
-    for index, row in enumerate(frames["finding_clauses"].to_dict("records")):
-        finding = str(row["finding"])
-        tested[finding] = tested.get(finding, 0) + 1
-        if row["clause"] != tested[finding]:
-            message = f"expected clause {tested[finding]} of {finding}, got {row['clause']}"
-            yield problem("finding_clauses", index, "clause", message)
-        try:
-            parse_clause({str(name): cell for name, cell in row.items()}, vocabulary)
-        except FindingSyntaxError as error:
-            yield problem("finding_clauses", index, error.column, str(error))
-    for index, (finding,) in texts(frames["findings"], "id"):
-        if finding not in tested:
-            yield problem("findings", index, "id", f"{finding} has no row in finding_clauses.csv")
-
-
-def _identifiers_run_on(frames: Frames) -> Iterator[Problem]:
-    """Check that numbered identifiers and ranks run without a gap."""
-    for table, column, form in (
-        ("findings", "id", "F{:02d}"),
-        ("claims", "id", "C{:02d}"),
-        ("bases", "rank", "{:d}"),
-        ("defaults", "id", "D{:02d}"),
-        ("purposes", "id", "U{:02d}"),
-        ("advice", "id", "A{:02d}"),
-    ):
-        if table not in frames:
-            continue
-        for index, (found,) in texts(frames[table], column):
-            expected = form.format(index + 1)
-            if found != expected:
-                message = f"expected {expected} here, got {found!r}"
-                yield problem(table, index, column, message)
-                break
 
 
 def count_rows(frame: pd.DataFrame, column: str, value: str) -> int:
@@ -397,16 +255,8 @@ _RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("attributes",), _unknown_is_empty),
     (("studies", "attributes", "attribute_definitions"), _studies_are_complete),
     (("attributes", "study_tables", "aliases"), _printed_cells_agree),
-    (("study_tables", "feature_assessment", "taxonomy", "aliases"), _printed_labels_are_known),
-    (("studies", "study_tables"), _absences_are_none),
     (("studies",), _years_match_keys),
-    (("studies", "references", "claims", "feature_assessment"), _cited_keys_exist),
-    (("taxonomy", "claims"), _claim_sections_exist),
-    (("feature_assessment",), _assessment_is_full),
-    (("taxonomy",), _accuracy_classes_tile),
     (("taxonomy", "attributes"), _classes_keep_their_limits),
     (("attributes",), _kinds_have_a_number),
-    (("findings", "finding_clauses", "taxonomy"), _findings_parse),
-    ((), _identifiers_run_on),
     (("counts",), _counts_hold),
 )

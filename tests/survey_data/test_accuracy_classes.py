@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 import survey_data
-from survey_data.validation.rules import check_rules
 
 
 def located(problems: list[survey_data.Problem], row: int, column: str | None = None) -> bool:
@@ -48,15 +47,3 @@ def test_a_kind_needs_a_number_and_is_one_of_those_there_are(copy: Any) -> None:
     rows = [c for c in copy.rows("attributes") if c[:2] != ["Sun2023", "accuracy_deg"]]
     copy.write("attributes", rows)
     assert located(copy.found("attributes.csv"), row - 1, "attribute")
-
-
-@pytest.mark.parametrize("value", ["CSS", "FSS", "VFSS", "UFSS"])
-@pytest.mark.parametrize("column", ["min_deg", "max_deg"])
-def test_accuracy_classes_leave_no_gap(
-    value: str, column: str, tables: survey_data.SurveyTables
-) -> None:
-    taxonomy = tables.taxonomy.copy()
-    assert check_rules({"taxonomy": taxonomy}) == []
-    taxonomy.loc[taxonomy["value"] == value, column] = 0.3
-    assert {p.column for p in check_rules({"taxonomy": taxonomy})} <= {"min_deg", "max_deg"}
-    assert check_rules({"taxonomy": taxonomy})

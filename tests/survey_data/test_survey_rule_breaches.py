@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 
@@ -20,11 +19,7 @@ Change = Callable[[pd.DataFrame], tuple[pd.DataFrame, int]]
 Where = Mapping[str, object]
 
 #: Rules look at the frames they need, and at nothing where one is missing.
-PRINTED = ("study_tables", "feature_assessment", "taxonomy", "aliases")
-ABSENT = ("studies", "study_tables")
-CITED = ("studies", "references", "claims", "feature_assessment")
 MODELS = ("taxonomy", "attributes", "compensated_models", "method_variants")
-GIVEN = ("taxonomy", "defaults", "purposes")
 MODEL = {"study": "Alvi2014", "attribute": "model"}
 NONE: Where = {}
 
@@ -63,16 +58,6 @@ def again(where: Where, **cells: str | None) -> Change:
     return change
 
 
-def without(where: Where, blamed: int = -1) -> Change:
-    """Take the first such row away; the one at fault is another."""
-
-    def change(frame: pd.DataFrame) -> tuple[pd.DataFrame, int]:
-        left = frame.drop(index=place(frame, where)).reset_index(drop=True)
-        return left, blamed if blamed >= 0 else len(left) + blamed
-
-    return change
-
-
 def breaches(frames: Frames, table: str, change: Change) -> list[tuple[str, int, str, str]]:
     """Return file, row relative to the one at fault, column and message of each problem."""
     changed, at = change(frames[table])
@@ -90,44 +75,9 @@ def breaches(frames: Frames, table: str, change: Change) -> list[tuple[str, int,
             ("attributes",), again(MODEL, value=None, basis="unknown"), "value",
             "unknown beside a value in row ",
         ),
-        (("study_tables", *PRINTED), put(MODEL, value="Sundial"), "value", "'Sundial' of model"),
-        (
-            ("feature_assessment", *PRINTED), put(NONE, extractor="Squint"), "extractor",
-            "unknown taxonomy value 'Squint' of extractor",
-        ),
-        (
-            ("study_tables", *ABSENT), put(MODEL, source="tab:felit"), "source",
-            "the model table is tab:mrlit, not tab:felit",
-        ),
-        (("study_tables", *ABSENT), put(MODEL, value="None"), "value", "None go together"),
-        (
-            ("study_tables", *ABSENT), again(MODEL, value="None", source="absent from tab:mrlit"),
-            "value", "Alvi2014 has the label None beside others",
-        ),
         (("studies",), put({"key": "Chang2008"}, identity="unknown"), "title", "yet a title"),
         (("studies",), put({"key": "Chang2008"}, title=None), "title", "confirmed, yet no title"),
         (("studies",), put({"key": "Chang2008"}, year=2009), "year", "Chang2008 says 2008, got"),
-        (("references", *CITED), put(NONE, key="Chang2008"), "key", "Chang2008 is a mapped study"),
-        (("claims", *CITED), put(NONE, study="Nobody1999"), "study", "no reference 'Nobody1999'"),
-        (("feature_assessment", *CITED), put(NONE, case_study="X1999"), "case_study", "no study"),
-        (
-            ("claims", "taxonomy"), put(NONE, section="model:sundial"), "section",
-            "no taxonomy value has the section 'model:sundial'",
-        ),
-        (
-            ("taxonomy",), put({"attribute": "mask"}, min_deg=1.0), "min_deg",
-            "only accuracy classes have limits",
-        ),
-        (
-            ("taxonomy",), put({"attribute": "accuracy", "value": "CSS"}, max_deg=9.0), "max_deg",
-            "must be open upwards",
-        ),
-        (
-            ("taxonomy",), put({"attribute": "accuracy", "value": "UFSS"}, min_deg=0.001),
-            "min_deg", "expected 0.0, got 0.001",
-        ),
-        (("claims",), without(NONE, 0), "id", "expected C01 here, got 'C02'"),
-        (("bases",), put({"rank": 3}, rank=4), "rank", "expected 3 here, got '4'"),
         (
             ("architectures", "attributes"), put({"mask": "Maskless"}, mask="Lens"), "mask",
             "Post2013 has no mask 'Lens'",
@@ -144,25 +94,6 @@ def breaches(frames: Frames, table: str, change: Change) -> list[tuple[str, int,
         (("method_variants", *MODELS), put(NONE, model="Fourier"), "model", "no model 'Fourier'"),
         (("method_variants", *MODELS), put(NONE, runs_as="Sundial"), "runs_as", "unknown model"),
         (("method_variants", *MODELS), put(NONE, extractor="Squint"), "extractor", "unknown extra"),
-        (("defaults", *GIVEN), put(NONE, given="mask=Sundial"), "given", "got 'mask=Sundial'"),
-        (("defaults", *GIVEN), put(NONE, given="mask=Slit&"), "given", "expected attribute=value"),
-        (("purposes", *GIVEN), put(NONE, unless="mask"), "unless", "got 'mask'"),
-        (("advice", "taxonomy"), put(NONE, mask="Sundial"), "mask", "'Sundial' of mask"),
-        (("advice", "taxonomy"), put(NONE, model_category="Old"), "model_category", "value 'Old'"),
-        (
-            ("advice", "taxonomy"), put(NONE, mask=None, detector=None), "mask",
-            "names neither a detector nor a mask",
-        ),
-        (("model_families", "taxonomy"), put(NONE, model="Sundial"), "model", "unknown model 'Su"),
-        (
-            ("model_families", "taxonomy"), without({"model": "LUT"}), "model",
-            "no row for the model 'LUT'",
-        ),
-        (("hardware",), put({"id": "C15"}, mask="Slit"), "mask", "bradford-css has Slit here and"),
-        (("hardware",), put({"id": "C13"}, supply="self-powered"), "supply", "and passive in row"),
-        (("hardware",), put({"id": "P09"}, supply=None), "supply", "0 mW, yet the supply is ''"),
-        (("hardware",), put({"id": "C01"}, supply="passive"), "supply", "76 mW, yet the supply is"),
-        (("venues", "studies"), put(NONE, study="Nobody1999"), "study", "no venue of Nobody1999"),
     ],
 )  # fmt: skip
 def test_a_breach_of_a_rule_is_named_by_its_cell(
@@ -175,40 +106,6 @@ def test_a_breach_of_a_rule_is_named_by_its_cell(
     assert any(each[:3] == (file_name(table), 0, column) and said in each[3] for each in found), (
         found
     )
-
-
-def test_a_class_of_no_width_is_named(frames: Frames) -> None:
-    taxonomy = frames["taxonomy"]
-    at = place(taxonomy, {"attribute": "accuracy", "value": "FSS"})
-    least = float(taxonomy["min_deg"].iloc[at])
-    found = breaches({"taxonomy": taxonomy}, "taxonomy", put({"value": "FSS"}, max_deg=least))
-    assert ("taxonomy.csv", 0, "max_deg", f"expected more than {least!r}, got {least!r}") in found
-    assert not math.isnan(least)
-
-
-def test_a_study_that_the_printed_tables_leave_out_is_named_once_for_each_attribute(
-    frames: Frames,
-) -> None:
-    printed = frames["study_tables"]
-    left = printed[printed["study"] != "Chang2008"].reset_index(drop=True)
-    found = check_rules({"studies": frames["studies"], "study_tables": left})
-    row = place(frames["studies"], {"key": "Chang2008"}) + FIRST_ROW
-    assert [(p.file, p.row, p.column, p.message) for p in found] == [
-        ("studies.csv", row, "key", f"Chang2008 has no {name} row in study_tables.csv")
-        for name in ("model", "extractor")
-    ]
-
-
-def test_an_extractor_is_assessed_by_every_property(frames: Frames) -> None:
-    frame = frames["feature_assessment"]
-    first = frame.loc[0]
-    left = frame.drop(index=0).reset_index(drop=True)
-    (found,) = check_rules({"feature_assessment": left})
-    assert (
-        found.message == f"{first['extractor']} has no row for the property {first['property']!r}"
-    )
-    last = max(left.index[left["extractor"] == first["extractor"]])
-    assert (found.row, found.column) == (last + FIRST_ROW, "property")
 
 
 @pytest.mark.parametrize("known", ["Chang2008", "CildenGuler2021"])

@@ -189,15 +189,6 @@ def test_doi_and_year_syntax_are_checked(copy: Any) -> None:
     assert located(copy.found("studies.csv"), 2, "year")
 
 
-def test_a_finding_is_tested_by_clauses_that_run_on(copy: Any) -> None:
-    rows = copy.rows("finding_clauses")
-    at = next(i for i, cells in enumerate(rows, 1) if cells[:2] == ["F50", "2"])
-    copy.set("finding_clauses", at, "clause", "3")
-    assert located(copy.found("finding_clauses.csv"), at, "clause")
-    copy.write("finding_clauses", [cells for cells in rows if cells[0] != "F50"])
-    assert located(copy.found("findings.csv"), 51, "id")
-
-
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
