@@ -10,17 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.claims.judgement import Judgement, judge, verdict
-from benchmark.claims.outcomes import RECORD, ClaimOutcome, contradictions, read_outcomes
+from benchmark.claims.outcomes import ClaimOutcome, read_outcomes
 from benchmark.claims.review import FormerOutcome, Review, former_outcomes, published, reviews
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.results.store import PUBLISHED
 from survey_data import labels
 
 EXPLANATIONS = DIRECTORY / "explanations.csv"
-
-
-class LedgerError(ValueError):
-    """An explanation that fits no verdict; the message names both."""
 
 
 @dataclass(frozen=True)
@@ -77,16 +73,14 @@ def ledger(
 ) -> tuple[Entry, ...]:
     """Return every claim with its verdict, in the survey's order.
 
-    LedgerError where an explanation was written for another verdict than the one that is measured,
-    or an outcome cannot be of its claim's plan.
+    An explanation that was written for another verdict than the one that is measured is left out.
     """
-    outcomes, written = read_outcomes(directory), _explanations(explanations)
-    if unknown := sorted(set(written) - set(claims())):
-        raise LedgerError(f"{explanations.name} explains no claim of the survey: {unknown}")
-    return tuple(
-        _entry(claim, outcomes.get(name), written.get(name, ("", "")))
-        for name, claim in claims().items()
-    )
+    outcomes = read_outcomes(directory)
+    written = {
+        (row["claim"], row["verdict"]): row["says"]
+        for row in rows_of(explanations, ("claim", "verdict", "says"))
+    }
+    return tuple(_entry(claim, outcomes.get(name), written) for name, claim in claims().items())
 
 
 def tally(entries: Iterable[Entry]) -> dict[str, int]:
@@ -96,35 +90,18 @@ def tally(entries: Iterable[Entry]) -> dict[str, int]:
     return known | ({"not measured": counts["not measured"]} if counts["not measured"] else {})
 
 
-def _entry(claim: Claim, outcome: ClaimOutcome | None, written: tuple[str, str]) -> Entry:
-    about, said = written
+def _entry(
+    claim: Claim, outcome: ClaimOutcome | None, written: Mapping[tuple[str, str], str]
+) -> Entry:
     review, former = reviews()[claim.id], former_outcomes().get(claim.id, ())
     if outcome is None:
         rules = tuple(judge(rule, ()) for rule in claim.rules)
-        return Entry(claim, None, review, former, rules, (), said, None)
-    if wrong := next(contradictions(claim, outcome), ""):
-        raise LedgerError(
-            f"{RECORD.name}: {claim.id}: {wrong}; measure it again with "
-            f"`python -m benchmark.experiments claims {claim.id}`"
-        )
+        return Entry(claim, None, review, former, rules, (), "", None)
     rules = tuple(judge(rule, outcome.values[rule.name]) for rule in claim.rules)
     second = tuple(judge(claim.rule(name), values) for name, values in outcome.second.items())
     found = published(verdict(rules), review.case)
-    if about and about != found:
-        raise LedgerError(
-            f"{claim.id} is explained as {about!r} and comes out as {found!r}: read the numbers "
-            f"and write its line in {EXPLANATIONS.name} anew"
-        )
+    said = written.get((claim.id, found), "")
     return Entry(claim, found, review, former, rules, second, said, outcome)
-
-
-def _explanations(path: Path) -> Mapping[str, tuple[str, str]]:
-    found: dict[str, tuple[str, str]] = {}
-    for row in rows_of(path, ("claim", "verdict", "says")):
-        if row["claim"] in found:
-            raise LedgerError(f"{path.name}: claim {row['claim']} stands there twice")
-        found[row["claim"]] = row["verdict"], row["says"]
-    return found
 
 
 def _rule(one: Judgement) -> dict[str, Any]:

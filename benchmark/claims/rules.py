@@ -5,16 +5,17 @@
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
-from typing import Literal, TypeVar, cast, get_args
+from typing import Any, Literal, get_args
+
+from pydantic.dataclasses import dataclass as pydantic_dataclass
 
 import survey_data
-from files.reading import parse_decimal, parse_integer
-from survey_data.table_records import read_records
 
 DIRECTORY = Path(__file__).resolve().parent
 
@@ -31,8 +32,6 @@ Replicate = Literal["unit", "seed"]
 RULES = ("claim", "rule", "statistic", "scale", "relation", "limit", "upper", "timed")
 PLANS = ("claim", "family", "trials", "replicate", "measured_on", "x_label", "y_label", "second")
 
-_Number = TypeVar("_Number", int, float)
-
 #: Fewer trials decide nothing.
 FEWEST_TRIALS = 5
 #: Number of the first trial. Those from 0 on were looked at while experiments were written and
@@ -40,11 +39,7 @@ FEWEST_TRIALS = 5
 FIRST_TRIAL = 1000
 
 
-class RulesError(ValueError):
-    """Rules, plans and claims that do not fit each other; the message names where."""
-
-
-@dataclass(frozen=True)
+@pydantic_dataclass(frozen=True)
 class Rule:
     """One thing that has to hold for a claim.
 
@@ -67,7 +62,7 @@ class Rule:
         return f"{self.relation} {self.limit:g}"
 
 
-@dataclass(frozen=True)
+@pydantic_dataclass(frozen=True)
 class Claim:
     """One statement of the survey and how it is put to the test.
 
@@ -92,105 +87,32 @@ class Claim:
     rules: tuple[Rule, ...]
 
     def rule(self, name: str) -> Rule:
-        """Return the rule of this name; RulesError naming the known ones."""
-        for rule in self.rules:
-            if rule.name == name:
-                return rule
-        known = ", ".join(rule.name for rule in self.rules)
-        raise RulesError(f"claim {self.id} has no rule {name!r}; it has {known}")
+        """Return the rule of this name."""
+        return next(rule for rule in self.rules if rule.name == name)
 
 
 @cache
 def claims() -> Mapping[str, Claim]:
-    """All claims by their ids, in the survey's order.
-
-    RulesError where a claim has no rule or no plan, or a rule or plan no claim.
-    """
-    table = survey_data.load().claims.set_index("id")
-    stated = {
-        str(key): dict(zip(table.columns, row, strict=True)) for key, *row in table.itertuples()
-    }
+    """All claims by their ids, in the survey's order."""
     rules: dict[str, list[Rule]] = {}
     for row in rows_of(DIRECTORY / "rules.csv", RULES):
-        rules.setdefault(row["claim"], []).append(_rule(row))
-    plans: dict[str, Mapping[str, str]] = {}
-    for row in rows_of(DIRECTORY / "trials.csv", PLANS):
-        if plans.setdefault(row["claim"], row) is not row:
-            raise RulesError(f"trials.csv: claim {row['claim']} stands there twice")
-    if not set(stated) == set(rules) == set(plans):
-        odd = sorted((set(stated) ^ set(rules)) | (set(stated) ^ set(plans)))
-        raise RulesError(
-            f"every claim needs rules and a plan, and they a claim; not so: {', '.join(odd)}"
-        )
-    return {key: _claim(key, said, plans[key], tuple(rules[key])) for key, said in stated.items()}
-
-
-def _claim(
-    key: str, said: Mapping[str, object], plan: Mapping[str, str], rules: tuple[Rule, ...]
-) -> Claim:
-    names = [rule.name for rule in rules]
-    if len(set(names)) < len(names):
-        raise RulesError(f"claim {key} has two rules of one name among {', '.join(names)}")
-    trials = _number(plan["trials"], parse_integer, f"claim {key}, trials")
-    if trials < FEWEST_TRIALS:
-        raise RulesError(f"claim {key} plans {trials} trials; at least {FEWEST_TRIALS} decide")
-    return Claim(
-        id=key,
-        section=_text(said["section"]),
-        study=_text(said["study"]),
-        statement=_text(said["claim"]),
-        how_to_test=_text(said["how_to_test"]),
-        family=plan["family"],
-        trials=trials,
-        replicate=cast("Replicate", _one_of(plan["replicate"], Replicate, key)),
-        measured_on=plan["measured_on"],
-        x_label=plan["x_label"],
-        y_label=plan["y_label"],
-        second=plan["second"],
-        rules=rules,
-    )
-
-
-def _rule(row: Mapping[str, str]) -> Rule:
-    place = f"{row['claim']} {row['rule']}"
-    rule = Rule(
-        name=row["rule"],
-        statistic=row["statistic"],
-        scale=cast("Scale", _one_of(row["scale"], Scale, place)),
-        relation=cast("Relation", _one_of(row["relation"], Relation, place)),
-        limit=_number(row["limit"], parse_decimal, f"{place}, limit"),
-        upper=_number(row["upper"], parse_decimal, f"{place}, upper") if row["upper"] else math.nan,
-        timed=_one_of(row["timed"], Literal["yes", ""], place) == "yes",
-    )
-    if (rule.relation == "within") != (rule.upper > rule.limit):
-        raise RulesError(
-            f"{place}: `within` needs an upper limit above the lower one, and nothing else has "
-            f"one; got {rule.relation} {row['limit']} {row['upper']}"
-        )
-    return rule
-
-
-def _one_of(value: str, allowed: object, place: str) -> str:
-    known = get_args(allowed)
-    if value not in known:
-        raise RulesError(f"{place}: expected one of {', '.join(known)}; got {value!r}")
-    return value
-
-
-def _text(value: object) -> str:
-    return value if isinstance(value, str) else ""
+        upper, timed = row["upper"] or math.nan, row["timed"] == "yes"
+        given: dict[str, Any] = {**row, "name": row["rule"], "upper": upper, "timed": timed}
+        made = Rule(**{field.name: given[field.name] for field in fields(Rule)})
+        rules.setdefault(row["claim"], []).append(made)
+    plans = {row["claim"]: row for row in rows_of(DIRECTORY / "trials.csv", PLANS)}
+    found = {}
+    for said in survey_data.load().claims.fillna("").to_dict("records"):
+        name = said["id"]
+        given = {**said, **plans[name], "statement": said["claim"], "rules": tuple(rules[name])}
+        found[name] = Claim(**{field.name: given[field.name] for field in fields(Claim)})
+    return found
 
 
 def rows_of(path: Path, columns: Sequence[str]) -> list[dict[str, str]]:
-    """Return the rows of a table by column; RulesError naming file, row and column of a flaw."""
-    records = read_records(path, columns)
-    if records.problems:
-        raise RulesError(str(records.problems[0]))
-    return [dict(zip(columns, cells, strict=True)) for _, cells in records.rows]
-
-
-def _number(text: str, read: Callable[[str], _Number], place: str) -> _Number:
-    try:
-        return read(text)
-    except ValueError as error:
-        raise RulesError(f"{place}: {error}") from error
+    """Return the rows of a table by column."""
+    with path.open(encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    if tuple(header) != tuple(columns):
+        raise ValueError(f"{path.name}: expected the columns {', '.join(columns)}")
+    return [dict(zip(columns, cells, strict=True)) for cells in rows]
