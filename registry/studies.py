@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType, SimpleNamespace
 
-from files.reading import parse_decimal
 from registry.fidelity.particulars import (
     Advice,
     CompensatedModel,
@@ -25,7 +24,6 @@ from registry.fidelity.particulars import (
 )
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
-    InvalidValueError,
     Taxonomy,
     TaxonomyEntry,
     unknown_name,
@@ -45,7 +43,6 @@ from survey_data.reported import (
     Quantity,
     ReportedAccuracy,
     reported_accuracies,
-    statistics,
 )
 from survey_data.sources import source_named
 from survey_data.texts import load_texts
@@ -223,10 +220,6 @@ class Study:
         }
 
 
-class FactsError(ValueError):
-    """The survey's tables can be read and do not fit each other; the message says where."""
-
-
 @dataclass(frozen=True)
 class Default:
     """What stands in an empty cell of a study that meets every condition, and why.
@@ -311,8 +304,6 @@ def facts(edition: Choice = "survey") -> Facts:
     ------
     SurveyDataError
         The tables are not as commands wrote them, or cannot be read; names file, row and column.
-    FactsError
-        They contradict each other.
     """
     if edition not in CHOICES:
         raise unknown_name("edition", edition, CHOICES)
@@ -329,26 +320,20 @@ def _facts(edition: Choice) -> Facts:
             if table == "studies":
                 later = [{**row, "edition": EXTENSION} for row in later]
             setattr(tables, table, [*getattr(tables, table), *later])
-    try:
-        return facts_from(tables)
-    except (LookupError, ValueError) as error:
-        raise FactsError(f"the tables contradict each other: {error}") from error
+    return facts_from(tables)
 
 
 def study_from(rows: Mapping[str, Sequence[Mapping[str, str]]]) -> Study:
     """Return a study the survey does not map that is in no table yet.
 
-    `rows` are by table of the extension, without its prefix; one of ``studies``. Raises as `facts`.
+    `rows` are by table of the extension, without its prefix; one of ``studies``.
     """
     tables = load_texts(_TABLES)
     for table in BY_STUDY:
         setattr(tables, table, list(rows.get(table, ())))
     tables.studies = [{**row, "edition": EXTENSION} for row in tables.studies]
     tables.extension_names, tables.verifications = list(rows.get("names", ())), []
-    try:
-        (found,) = facts_from(tables).studies.values()
-    except (LookupError, ValueError) as error:
-        raise FactsError(f"the tables contradict each other: {error}") from error
+    (found,) = facts_from(tables).studies.values()
     return found
 
 
@@ -363,11 +348,7 @@ def study(key: str) -> Study:
 
 
 def facts_from(tables: SimpleNamespace) -> Facts:
-    """Facts from tables with the survey's columns, as `load_texts` gives them.
-
-    Raises InvalidValueError for a value outside the taxonomy and ValueError for attributes of a
-    study that is not in the table of studies.
-    """
+    """Facts from valid tables with the survey's columns, as `load_texts` gives them."""
     rings = {("model", row["model"]): row["calibration"] for row in tables.model_families}
     taxonomy = Taxonomy(
         TaxonomyEntry(
@@ -387,12 +368,6 @@ def facts_from(tables: SimpleNamespace) -> Facts:
         if value == "":
             unknown.setdefault(key, {})[attribute] = row["note"]
             continue
-        if attribute in NUMERIC_ATTRIBUTES:
-            _require_number(key, attribute, value)
-        elif attribute in KIND_OF.values():
-            _require_kind(key, attribute, value)
-        else:
-            taxonomy.require(attribute, value, parameter=f"{key} {attribute}")
         cell = AttributeValue(value, row["basis"], row["source"], row["note"])
         stated.setdefault(key, {}).setdefault(attribute, []).append(cell)
     roles: dict[str, dict[tuple[str, str], MethodRole]] = {}
@@ -407,8 +382,6 @@ def facts_from(tables: SimpleNamespace) -> Facts:
     found: dict[str, Study] = {}
     for row in tables.studies:
         key = row["key"]
-        if key in found:
-            raise ValueError(f"study {key!r} stands twice in the table of studies")
         found[key] = Study(
             **{**row, "year": int(row["year"]) if row["year"] else None},
             values=MappingProxyType(
@@ -419,11 +392,6 @@ def facts_from(tables: SimpleNamespace) -> Facts:
             combinations=combined.get(key, ()),
             names=MappingProxyType(names.get(key, {})),
             verifications=tuple(verified.get(key, ())),
-        )
-    strangers = sorted({*stated, *unknown})
-    if strangers:
-        raise ValueError(
-            f"attributes of studies not in the table of studies: {', '.join(strangers)}"
         )
     return Facts(
         MappingProxyType(found),
@@ -464,21 +432,6 @@ def _verify(tables: SimpleNamespace) -> dict[str, list[Verification]]:
         one = Verification(row["name"], row["date"], row["confirms"], row["source"])
         found.setdefault(row["study"], []).append(one)
     return found
-
-
-def _require_number(key: str, attribute: str, value: str) -> None:
-    """Raise InvalidValueError for a numeric cell that is no finite number, spelt plainly."""
-    try:
-        parse_decimal(value)
-    except ValueError as error:
-        raise InvalidValueError(f"{key} {attribute}", value, "a number in degrees") from error
-
-
-def _require_kind(key: str, attribute: str, value: str) -> None:
-    """Raise InvalidValueError for a kind of accuracy or precision that no rule is known for."""
-    if value not in statistics():
-        expected = f"one of {', '.join(statistics())}"
-        raise InvalidValueError(f"{key} {attribute}", value, expected)
 
 
 def _properties(tables: SimpleNamespace, taxonomy: Taxonomy) -> Mapping[str, Mapping[str, int]]:

@@ -104,7 +104,8 @@ def claims() -> Mapping[str, Claim]:
     found = {}
     for said in survey_data.load().claims.fillna("").to_dict("records"):
         name = said["id"]
-        given = {**said, **plans[name], "statement": said["claim"], "rules": tuple(rules[name])}
+        given = {**plans[name], **{str(k): v for k, v in said.items()}}
+        given |= {"statement": said["claim"], "rules": tuple(rules[name])}
         found[name] = Claim(**{field.name: given[field.name] for field in fields(Claim)})
     return found
 

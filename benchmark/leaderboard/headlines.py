@@ -6,6 +6,7 @@ under the condition that it is run for. ``headlines.csv`` says of some how senso
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -18,18 +19,12 @@ from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
 from registry.studies import Study
 from survey_data.reported import QUANTITIES, Quantity, ReportedAccuracy
-from survey_data.table_records import read_records
 
 FILE = Path(__file__).parent / "headlines.csv"
-COLUMNS = ("study", "quantity", "difference")
 
 Row = Mapping[str, Any]
 #: Data set, condition, extractor and model.
 Place = tuple[str, str, str, str]
-
-
-class HeadlineError(ValueError):
-    """The table is broken; the message names the line."""
 
 
 #: The statistic of our errors that is compared with a published accuracy, by the kind of that
@@ -77,25 +72,11 @@ class Headline:
 
 
 @cache
-def read_differences(path: Path = FILE) -> Mapping[tuple[str, str], str]:
-    """Return what is said of differences, by study and quantity.
-
-    HeadlineError for a broken line, an unknown quantity, nothing said, and what is said twice.
-    """
-    records = read_records(path, list(COLUMNS))
-    if records.problems:
-        raise HeadlineError("; ".join(map(str, records.problems)))
-    found: dict[tuple[str, str], str] = {}
-    for line, (study, quantity, difference) in records.rows:
-        where = f"{path.name}, line {line}"
-        if quantity not in QUANTITIES:
-            raise HeadlineError(f"{where}: {quantity} is none of {', '.join(QUANTITIES)}")
-        if not difference:
-            raise HeadlineError(f"{where}: nothing says how sensor and noise differ")
-        if (study, quantity) in found:
-            raise HeadlineError(f"{where}: {study}, {quantity} stands there already")
-        found[study, quantity] = difference
-    return MappingProxyType(found)
+def read_differences() -> Mapping[tuple[str, str], str]:
+    """Return what is said of differences, by study and quantity."""
+    with FILE.open(encoding="utf-8", newline="") as file:
+        rows = csv.DictReader(file)
+        return {(row["study"], row["quantity"]): row["difference"] for row in rows}
 
 
 def headlines(
