@@ -1,16 +1,15 @@
 """Writing files and directories whole or not at all.
 
 Everything is made beside its place, under a hidden name that ends in `SUFFIX`, and renamed into it:
-who reads meanwhile sees the earlier content or the new one, and a process that is killed leaves no
-half of either. The next writer removes its leftovers once they are a day old.
+who reads meanwhile sees the earlier content or the new one (for a moment no directory), and a
+process that is killed leaves no half of either. The next writer removes its leftovers once they are
+a day old.
 """
 
 from __future__ import annotations
 
-import ctypes
 import os
 import shutil
-import sys
 import tempfile
 import time
 from collections.abc import Collection, Iterator, Mapping
@@ -74,10 +73,10 @@ def temporary_directory_beside(target: Path) -> Iterator[Path]:
 def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """Yield paths to make files and directories at, which then take their places.
 
-    A directory changes places with the earlier one, on Linux at once. Elsewhere the earlier one is
-    moved aside for that (`.<name>.before`): a kill in this moment leaves it there, and the next
-    call puts it back first. An error in the block leaves the targets, all in one directory, as they
-    are; UnreplaceableError as `require_replaceable`. Another process waits (`files.locks`).
+    An earlier directory is moved aside for that (`.<name>.before`), for a moment: a kill in it
+    leaves it there, and the next call puts it back first. An error in the block leaves the targets,
+    all in one directory, as they are; UnreplaceableError as `require_replaceable`. Another process
+    waits (`files.locks`).
     """
     for target in targets:
         require_replaceable(target)
@@ -102,22 +101,12 @@ def restore(target: Path) -> None:
 def _put(path: Path, target: Path) -> None:
     if not target.is_dir() or target.is_symlink():
         path.replace(target)
-    elif not _exchange(path, target):  # else the earlier one goes with what it was made in
+    else:
         target.rename(target.with_name(f".{target.name}.before"))
         try:
             path.rename(target)
         finally:
             restore(target)
-
-
-def _exchange(one: Path, other: Path) -> bool:
-    """Let two paths change places at once; False where the system or its file system cannot."""
-    if sys.platform != "linux":
-        return False
-    here, exchange = -100, 2  # AT_FDCWD, RENAME_EXCHANGE
-    renameat2 = getattr(ctypes.CDLL(None), "renameat2", None)
-    done = renameat2 and renameat2(here, os.fsencode(one), here, os.fsencode(other), exchange)
-    return done == 0
 
 
 def require_replaceable(path: Path) -> None:

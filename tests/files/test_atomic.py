@@ -142,7 +142,6 @@ def test_a_directory_and_a_file_take_their_places_and_an_error_changes_nothing(
         return rename(self, target)
 
     monkeypatch.setattr(Path, "rename", refused)
-    monkeypatch.setattr(atomic, "_exchange", lambda *_: False)
     with pytest.raises(PermissionError):
         renew(earlier)
     monkeypatch.undo()
@@ -171,7 +170,7 @@ def test_a_kill_at_any_step_loses_nothing_and_the_next_run_ends_well(
         "    return step\n"
         "Path.rename, Path.replace = dying(Path.rename), dying(Path.replace)\n"
         "atomic = tests.atomic\n"
-        "atomic.restore, atomic._exchange = lambda _: None, lambda *_: False\n"
+        "atomic.restore = lambda _: None\n"
         "shutil.rmtree = dying(shutil.rmtree)\n"
         "tests.renew(Path(sys.argv[1]))\n"
     )
@@ -188,21 +187,6 @@ def test_a_kill_at_any_step_loses_nothing_and_the_next_run_ends_well(
     renew(earlier)
     assert names(earlier / "out") == ["new"]
     assert not aside.exists()
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no exchange")
-def test_no_moment_is_without_the_directory_where_the_system_exchanges_two(
-    earlier: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def moved(self: Path, target: Path) -> Path:
-        raise AssertionError(f"{self} was moved to {target}")
-
-    monkeypatch.setattr(Path, "rename", moved)
-    with replace_all(earlier / "out") as (out,):
-        out.mkdir()
-        (out / "new").touch()
-    assert names(earlier) == ["out", "out.zip"]
-    assert names(earlier / "out") == ["new"]
 
 
 FILES = {"a.json": b"new a", "a.c": b"new c"}
