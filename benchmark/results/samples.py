@@ -223,38 +223,14 @@ def read_samples(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     """Return the errors of a data set, sorted by extractor, model, unit and sample.
 
     Of `COLUMNS`; extractor and model are categories. FileNotFoundError where the record has none of
-    this data set; StoreError for a file that is damaged, holds other columns or types, or values
-    that no run writes.
+    this data set; StoreError for a file that is damaged or holds other columns or types.
     """
-    path = directory / path_of(dataset)
-    table = read_parquet(path, COLUMNS, names=_NAMES)
-    error, outcome = table["error_deg"].to_numpy(), table["outcome"].to_numpy()
-    _require(path, bool((np.isnan(error) | ((error >= 0) & (error <= 180))).all()), "error_deg")
-    _require(path, bool(((outcome == ANSWERED) == ~np.isnan(error)).all()), "outcome")
-    _require(path, bool(np.isin(outcome, list(OUTCOMES)).all()), "outcome")
-    order = [table[name].cat.codes.to_numpy().astype(np.int64) for name in _NAMES]
-    order += [table[name].to_numpy().astype(np.int64) for name in ("unit", "sample")]
-    _require(path, all(bool((column >= 0).all()) for column in order), "unit and sample")
-    start = order[3] == 0  # of a cell: its samples count from 0
-    _require(path, bool(start[:1].all() and ((np.diff(order[3]) == 1) | start[1:]).all()), "sample")
-    named = ((str(x), str(m)) for x, m in zip(*(table[n][start] for n in _NAMES), strict=True))
-    cells = [(*names, int(u)) for names, u in zip(named, order[2][start], strict=True)]
-    _require(path, all(a < b for a, b in pairwise(cells)), "order of rows")
-    same = [column[1:] == column[:-1] for column in order[:3]]
-    _require(path, bool((np.logical_and.reduce(same) | start[1:]).all()), "sample")
-    return table
+    return read_parquet(directory / path_of(dataset), COLUMNS, names=_NAMES)
 
 
 def read_directions(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     """Return the samples of a data set by number, `DIRECTION_COLUMNS`; raises as `read_parquet`."""
-    path = directory / path_of(dataset, directions=True)
-    table = read_parquet(path, DIRECTION_COLUMNS)
-    _require(path, table["sample"].tolist() == list(range(len(table))), "sample")
-    length = np.linalg.norm(table[["sun_x", "sun_y", "sun_z"]].to_numpy(), axis=1)
-    _require(path, bool((np.abs(length - 1.0) < 1e-5).all()), "sun_x, sun_y and sun_z")
-    bound = table["bound_deg"].to_numpy()
-    _require(path, bool((np.isnan(bound) | (bound > 0)).all()), "bound_deg")
-    return table
+    return read_parquet(directory / path_of(dataset, directions=True), DIRECTION_COLUMNS)
 
 
 def _format_value(array: NDArray[Any]) -> str:
@@ -263,11 +239,6 @@ def _format_value(array: NDArray[Any]) -> str:
 
 def _unspelt(text: str, kind: type[Kind]) -> NDArray[Kind]:
     return np.frombuffer(b64decode(text, validate=True), dtype=kind)
-
-
-def _require(path: Path, holds: bool, what: str) -> None:
-    if not holds:
-        raise StoreError(f"{path}: values of {what} that no run writes")
 
 
 def _round_to(values: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -263,7 +263,7 @@ def _facts(components: Components, kind: str, name: str, cell: Cell) -> Facts:
 _COLUMNS = {
     "dataset": word,
     "condition": word,
-    "split": word,
+    "split": one_of(*SPLITS),
     "version": count,
     "n": count,
     "observable": count,
@@ -289,27 +289,7 @@ def read_pins(path: Path) -> dict[Place, Pin]:
         if missing:
             raise StoreError(f"{path}, line {line}: expected a number in {', '.join(missing)}")
         pin = Pin(**row)
-        if said := _contradiction(pin):
-            raise StoreError(f"{path}, line {line}: {said}")
         if pin.place in found:
             raise StoreError(f"{path}, line {line}: {'/'.join(pin.place)} is there twice")
         found[pin.place] = pin
     return found
-
-
-def _contradiction(pin: Pin) -> str:
-    """Say in what a pin contradicts itself; empty for nothing."""
-    if pin.split not in SPLITS:
-        return f"expected a split of {', '.join(SPLITS)}, got {pin.split!r}"
-    if pin.split != "test":
-        given = [
-            name
-            for name in ("observable", "bound_deg", "head_bound_deg", *BOARD_FACTS)
-            if getattr(pin, name) is not None
-        ]
-        return f"{given[0]} belongs to the split test alone" if given else ""
-    if pin.observable is None or pin.observable > pin.n:
-        return f"expected at most {pin.n} observable samples, got {pin.observable}"
-    if pin.bound_deg is not None and pin.observable == 0:
-        return "a bound and no observable samples contradict each other"
-    return ""

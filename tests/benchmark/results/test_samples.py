@@ -3,7 +3,6 @@
 import math
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -125,37 +124,18 @@ def test_no_changed_byte_passes_unseen_or_crashes(record: Path) -> None:
             assert samples.read_samples("lamp", record).equals(before)
 
 
-def _written(record: Path, **changes: Any) -> None:
-    table = pd.read_parquet(record / "samples" / "lamp.parquet")
-    kinds = dict(samples.COLUMNS) | {n: str(k) for n, k in changes.items() if isinstance(k, str)}
-    for name, values in changes.items():
-        if not isinstance(values, str):
-            table[name] = values
-    schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in kinds.items()])
-    columns = [pa.array(list(table[field.name]), type=field.type) for field in schema]
-    path = record / "samples" / "lamp.parquet"
-    parquet.write_table(pa.Table.from_arrays(columns, schema=schema), path)
-
-
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("column", "kind", "said"),
     [
-        ({"error_deg": "double"}, r"error_deg \(double\)"),
-        ({"unit": "int64"}, r"unit \(int64\)"),
-        ({"error_deg": [-1.0] * 12}, "values of error_deg"),
-        ({"error_deg": [200.0] * 12}, "values of error_deg"),
-        ({"error_deg": [1.0] * 12}, "values of outcome"),
-        ({"outcome": [7] * 12}, "values of outcome"),
-        ({"sample": [0, 1, 2, 2] * 3}, "values of sample"),
-        ({"sample": [1, 2, 3, 4] * 3}, "values of sample"),
-        ({"unit": [0] * 12}, "order of rows"),
-        ({"extractor": [None] * 12}, "nulls"),
+        ("error_deg", pa.float64(), r"error_deg \(double\)"),
+        ("unit", pa.int64(), r"unit \(int64\)"),
     ],
 )
-def test_other_types_and_values_are_refused(
-    record: Path, changes: dict[str, Any], said: str
-) -> None:
-    _written(record, **changes)
+def test_other_types_are_refused(record: Path, column: str, kind: pa.DataType, said: str) -> None:
+    path = record / "samples" / "lamp.parquet"
+    table = parquet.read_table(path)
+    place = table.schema.get_field_index(column)
+    parquet.write_table(table.set_column(place, column, table[column].cast(kind)), path)
     with pytest.raises(StoreError, match=said):
         samples.read_samples("lamp", record)
 
