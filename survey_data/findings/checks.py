@@ -113,8 +113,8 @@ def study_values(
 def evaluate(
     row: Mapping[str, Any], values: Mapping[str, Entry], vocabulary: Vocabulary
 ) -> ClauseVerdict:
-    """Judge a row of the table of clauses by the studies' values; raises as `parse_clause`."""
-    clause = parse_clause(row, vocabulary)
+    """Judge a row of the table of clauses by the studies' values."""
+    clause = parse_clause(row)
     matching = [entry for entry in values.values() if passes(entry, clause.given)]
     counted = [entry[clause.ranked] for entry in matching if clause.ranked in entry]
     counts = _counts(clause, counted, vocabulary)

@@ -85,8 +85,7 @@ class FidelityReport(JsonData):
 def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> FidelityReport:
     """Compare valid tables with what the survey says of itself, every number counted from them.
 
-    `problems` are carried in the report. FindingSyntaxError, KeyError or LookupError where the
-    tables are not valid.
+    `problems` are carried in the report. KeyError or LookupError where the tables are not valid.
     """
     counts = _counts(tables)
     by_id = {line.id: line for line in counts}

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from survey_data import SurveyTables
-from survey_data.findings.grammar import Vocabulary, parse_clause
+from survey_data.findings.grammar import CATEGORY_OF, KINDS, PAIR, Vocabulary, parse_clause
 
 
 @pytest.fixture(scope="module")
@@ -77,13 +77,27 @@ def test_accuracy_classes_cover_every_angle_once(tables: SurveyTables) -> None:
     assert tables.taxonomy.loc[~is_class, ["min_deg", "max_deg"]].isna().all(axis=None)
 
 
-def test_findings_have_clauses_that_parse_and_run_on(
+def test_findings_have_clauses_that_run_on_and_name_known_values(
     tables: SurveyTables, vocabulary: Vocabulary
 ) -> None:
     for _, rows in tables.finding_clauses.groupby("finding"):
         assert rows["clause"].tolist() == list(range(1, len(rows) + 1))
+    years = words(tables.studies["year"])
     for row in tables.finding_clauses.to_dict("records"):
-        parse_clause({str(name): cell for name, cell in row.items()}, vocabulary)
+        clause = parse_clause({str(name): cell for name, cell in row.items()})
+        assert clause.kind in KINDS
+        for attribute, values in (*clause.given, (clause.ranked, clause.values)):
+            named = {one for value in values for one in value.split(" or ")}
+            if attribute == PAIR:
+                columns = zip(*(n.split("+") for n in named), strict=True)
+                for part, each in zip(PAIR.split("+"), columns, strict=True):
+                    assert set(each) <= vocabulary.values[part]
+            elif attribute in CATEGORY_OF:
+                assert named <= vocabulary.categories(attribute)
+            else:
+                assert named <= (vocabulary.values | {"year": years})[attribute]
+        assert len(set(clause.values)) == len(clause.values) > (clause.kind == "order")
+        assert clause.kind != "top-centroid" or clause.ranked == "extractor"
     assert words(tables.finding_clauses["finding"]) == words(tables.findings["id"])
 
 
