@@ -1,7 +1,10 @@
 """Who hangs up gives the place in the queue of calibrations away; others wait for theirs."""
 
+import logging
 import os
 import socket
+import struct
+import tempfile
 import threading
 import time
 
@@ -65,3 +68,29 @@ def test_who_hangs_up_gives_the_turn_to_the_next(atlas, serve, work):
         waiting(0)
         assert not work.acquire(blocking=False)
         assert left(connection) == before + 3
+
+
+@pytest.mark.parametrize("path", [b"/v1/calibrations", b"/v1/calibrations/preview", b"/calibrate"])
+def test_a_hundred_uploads_that_are_cut_leave_no_line_no_file_and_no_place_taken(
+    atlas, serve, work, path, tmp_path, monkeypatch, caplog
+):
+    """Cut in the head, in a part, in a file that is on disk, at the end; by a reset or a close."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(calibrations, "preview_uploads", calibrations.calibrate_uploads)
+    body = BODY.replace(b"\r\n\r\n1", b"\r\n\r\n" + b"1" * 1_200_000)
+    head = HEAD.replace(b"/v1/calibrations", path).replace(b"%d" % len(BODY), b"%d" % len(body))
+    cuts = (0, 30, 5000, 1_100_000, len(body) - 3, len(body))
+    with caplog.at_level(logging.WARNING), serve(atlas.app) as connection:
+        before = left(connection)
+        for number in range(100):
+            with socket.create_connection((connection.host, connection.port)) as plug:
+                plug.sendall(head + body[: cuts[number % len(cuts)]])
+                if number % 2:
+                    plug.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        deadline = time.monotonic() + 60
+        while (count := left(connection)) < before + 100:
+            assert time.monotonic() < deadline, count - before
+            time.sleep(0.05)
+        waiting(0)
+    assert caplog.records == []
+    assert list(tmp_path.iterdir()) == []
