@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl
 from python_multipart.multipart import parse_options_header
 from starlette.datastructures import FormData, QueryParams
 from starlette.exceptions import HTTPException
-from starlette.formparsers import MultiPartException
+from starlette.formparsers import MultiPartException, MultiPartParser
 from starlette.requests import Request
 
 from api.schema.former_names import PARAMETERS, current_parameters
@@ -26,8 +26,9 @@ LARGEST_JSON = 64 * 1024  # bytes; the longest sensible set of requirements is a
 #: Bytes of the fields of a form, each and all: a config, and what separates parts; with files.
 LARGEST_FIELD = 100_000
 LARGEST_FORM = LARGEST + LARGEST_FIELD
-#: Files of a form, and fields; python-multipart bounds the heads of each (8 lines of 4 kB).
-MOST_PARTS = 40
+#: Files of a form, and fields; python-multipart bounds the heads of each (8 lines of 4 kB), which
+#: take the square of their semicolons to parse.
+MOST_PARTS, MOST_SEMICOLONS = 40, 50
 #: A body that brings fewer bytes a second, after so many seconds, is given up.
 SLOWEST_PER_S, PATIENCE_S = 20_000, 10.0
 _LONGEST_TYPE = 500  # characters of a Content-Type: parsing it takes their square
@@ -45,6 +46,19 @@ class StrictQuery(QueryParams):
         """Return the value of a field, or the list of its values."""
         values = self.getlist(key)
         return values if len(values) > 1 else super().get(key, default)
+
+
+class _Parts(MultiPartParser):
+    """Parts of a form, each refused by its head before that is parsed."""
+
+    def on_headers_finished(self) -> None:
+        """Take the name of a part."""
+        stated = self._current_part.content_disposition or b""
+        if stated.count(b";") > MOST_SEMICOLONS:
+            raise MultiPartException(
+                f"more than {MOST_SEMICOLONS} semicolons in Content-Disposition"
+            )
+        super().on_headers_finished()
 
 
 class StrictRequest(Request):
@@ -99,14 +113,11 @@ class StrictRequest(Request):
         """
         self._largest = LARGEST_FORM
         self._last = b"--%s--" % self._require(FORM, f"{FORM} with a boundary")
-        most = {"max_files": MOST_PARTS, "max_fields": MOST_PARTS}
+        most = {"max_files": MOST_PARTS, "max_fields": MOST_PARTS, "max_part_size": LARGEST_FIELD}
         try:
-            form = await super().form(**most, max_part_size=LARGEST_FIELD)
-        except BodyProblem:
-            raise
-        except (MultiPartException, HTTPException) as error:
-            refused = error if isinstance(error, MultiPartException) else error.__context__
-            raise _malformed(str(getattr(refused, "__cause__", None) or refused)) from error
+            form = await _Parts(self.headers, self.stream(), **most).parse()
+        except MultiPartException as error:
+            raise _malformed(str(error.__cause__ or error)) from error
         named = [name for name, value in form.multi_items() if isinstance(value, str)]
         twice = next((name for name in named if named.count(name) > 1), None)
         if twice is not None:

@@ -72,7 +72,7 @@ def test_who_hangs_up_gives_the_turn_to_the_next(atlas, serve, work):
 
 @pytest.mark.parametrize("path", [b"/v1/calibrations", b"/v1/calibrations/preview", b"/calibrate"])
 def test_a_hundred_uploads_that_are_cut_leave_no_line_no_file_and_no_place_taken(
-    atlas, serve, work, path, tmp_path, monkeypatch, caplog
+    *, atlas, serve, work, path, tmp_path, monkeypatch, caplog
 ):
     """Cut in the head, in a part, in a file that is on disk, at the end; by a reset or a close."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))

@@ -58,6 +58,7 @@ def test_fields_and_files_are_told_apart_whatever_else_stands_in_a_head() -> Non
         ),
         (body(*(FIELD % (b"f%d" % n, b"") for n in range(41))), "number of fields is 40"),
         (body(*[FILE % (b"a", b"1")] * 41), "number of files is 40"),
+        (body(FIELD % (b'apply"' + 50 * b";", b"true")), "more than 50 semicolons"),
         (body(FIELD % (b"config", b"#" * 100_001)), "maximum size"),
         (b"before" + body(FIELD % (b"apply", b"true")), "Expected boundary"),
         (body(FILE % (b"a", b"1"))[:-8], "no boundary ends it"),
@@ -71,7 +72,10 @@ def test_a_body_that_is_no_form_is_refused_with_the_reason(whole: bytes, reason:
 
 
 def test_forty_parts_are_taken() -> None:
-    assert len(form_of([body(*(FIELD % (b"f%d" % n, b"") for n in range(40)))])[0]) == 40
+    fields, files = form_of([body(*(FIELD % (b"f%d" % n, b"") for n in range(40)))])
+    assert (len(fields), files) == (40, ())
+    name = 48 * b";" + b".csv"
+    assert form_of([body(FILE % (name, b"1"))]) == ({}, (Upload(name.decode(), b"1"),))
 
 
 @pytest.mark.parametrize("coding", ["gzip", "br, identity"])
