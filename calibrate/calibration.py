@@ -147,6 +147,7 @@ def calibrate(
     thorough: bool = False,
     models: Sequence[str] | None = None,
     progress: Callable[[str, int, int], None] = lambda *_: None,
+    most_rows: int | None = None,
 ) -> Calibration:
     """Calibrate a sensor by a file of a turntable, or by several files of one sensor, each a run.
 
@@ -165,6 +166,8 @@ def calibrate(
         Only these, such as ``"polynomial-2d"``.
     progress : callable
         Told the step, how many are done and how many there are.
+    most_rows : int, optional
+        Rows of all files beyond which they are refused.
 
     Returns
     -------
@@ -173,11 +176,11 @@ def calibrate(
     Raises
     ------
     TableError
-        If a file is none, or lacks a column.
+        If a file is none, or lacks a column, or if there are more rows than `most_rows`.
     UnusableDataError
         If the samples settle no model; the message says what would.
     """
-    read = read_sources(paths, settings, progress)
+    read = read_sources(paths, settings, progress, most_rows)
     found = calibrate_tables(
         read.tables,
         read.settings,

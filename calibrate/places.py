@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats
 
 #: Most rings, and sectors of each: a table that flight code can hold.
@@ -17,6 +19,19 @@ _A_RING = 40
 _ONE_SIDED, _ASIDE_DEG = 0.3, 20.0
 #: Off-axis angle of the last ring from which it is a point, as the first is.
 _ALL_AROUND_DEG = 170.0
+
+
+def hull_of_poses(sun: Floats) -> Hull:
+    """Return the cone of directions (N, 3), found once for the same: of 100,000 it takes 2 s.
+
+    UnusableDataError if they lie in one plane through the sensor.
+    """
+    return _hull_of(np.asarray(sun, dtype=np.float64).tobytes())
+
+
+@lru_cache(maxsize=1)
+def _hull_of(poses: bytes) -> Hull:
+    return Hull.of_directions(np.frombuffer(poses).reshape(-1, 3), "poses")
 
 
 @dataclass(frozen=True)

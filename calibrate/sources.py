@@ -38,13 +38,17 @@ def read_sources(
     paths: Sequence[Path],
     settings: Settings | None = None,
     progress: Callable[[str, int, int], None] = lambda *_: None,
+    most_rows: int | None = None,
 ) -> Sources:
     """Read files, or directories of pictures with one table each; settings are guessed if none.
 
-    TableError if a file is none, or lacks a column.
+    TableError if a file is none, or lacks a column, or if all have more than so many rows.
     """
     paths = [table_in(path) if path.is_dir() else path for path in paths]
     tables = [read_table(path, settings.file if settings else None) for path in paths]
+    rows = sum(map(len, tables))
+    if most_rows is not None and rows > most_rows:
+        raise TableError(f"expected at most {most_rows} rows in all; got {rows}")
     stated, notes = _stated(tables, settings)
     if stated.readings.kind == "frames":
         for at, path in enumerate(paths):

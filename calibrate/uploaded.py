@@ -29,13 +29,15 @@ from calibrate.products import products
 from calibrate.report.page import Asked
 from calibrate.report.requirement import RequirementError, requirement
 from calibrate.settings import SettingsError, parse_settings, parse_toml
-from calibrate.table import TableError, read_table
+from calibrate.table import TableError
 from calibrate.template import preview
 from files.atomic import temporary_directory
 
-#: Bytes of all files together and of a config, seconds, and bytes of memory of a calibration: of
-#: 100,000 rows it takes half of that.
+#: Bytes of all files together and of a config, seconds of the processor, and bytes of memory of a
+#: calibration: of 100,000 rows it takes half of both.
 LARGEST, LARGEST_CONFIG, LONGEST_S, MOST_MEMORY = 10_000_000, 20_000, 60.0, 2**30
+#: A busy machine takes so many times as long.
+_PATIENCE = 3.0
 #: Files and rows of a calibration.
 MOST_FILES, MOST_ROWS = 20, 100_000
 _LONGEST_FAULT = 200
@@ -105,7 +107,8 @@ def calibrate_uploads(
     require : str
         A requirement on the error, as `calibrate.report.requirement` reads it; none if empty.
     longest_s : float, optional
-        Seconds after which the process is ended; by default `LONGEST_S`.
+        Seconds after which the process is ended; by default thrice `LONGEST_S`, which its
+        processor time is bounded by.
     caller : Caller, optional
         Who may hang up meanwhile; refused then.
 
@@ -135,7 +138,7 @@ def _answered(
     uploads: Sequence[Upload], task: dict[str, Any], longest_s: float | None, caller: Caller
 ) -> Any:
     """Return what a process of its own answers to a task on files."""
-    longest_s = LONGEST_S if longest_s is None else longest_s
+    longest_s = _PATIENCE * LONGEST_S if longest_s is None else longest_s
     with closing(caller), temporary_directory() as directory:
         _require_bounds(uploads, str(task["config"]))
         names = [_safe(one.name, number) for number, one in enumerate(uploads)]
@@ -150,10 +153,7 @@ def _answered(
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             )  # fmt: skip
         except subprocess.TimeoutExpired:
-            raise UploadRefusedError(
-                f"the calibration took over {longest_s:g} s; send fewer rows, or run `sunatlas "
-                "calibrate`, which has no limit"
-            ) from None
+            raise UploadRefusedError(_too_long(longest_s)) from None
         said = directory / _SAID
         if done.returncode or not said.is_file():
             raise UploadRefusedError(_ended(done.returncode))
@@ -170,12 +170,21 @@ def _answered(
 
 def _ended(status: int) -> str:
     """Say how a process ended that left no answer."""
+    if status == -signal.SIGXCPU:
+        return _too_long(LONGEST_S)
     if status == -signal.SIGKILL:
         return "the calibration was killed, most likely for want of memory; send fewer rows"
     if status < 0:
         names = {one.value: one.name for one in signal.Signals}
         return f"the calibration was ended by {names.get(-status, f'signal {-status}')}"
     return f"the calibration ended without an answer (exit code {status}); this is a fault of ours"
+
+
+def _too_long(seconds: float) -> str:
+    return (
+        f"the calibration took over {seconds:g} s; send fewer rows, or run `sunatlas calibrate`, "
+        "which has no limit"
+    )
 
 
 def _require_bounds(uploads: Sequence[Upload], config: str) -> None:
@@ -217,12 +226,8 @@ def _made(paths: Sequence[Path], task: dict[str, Any]) -> dict[str, str]:
     if task["config"].strip():
         settings = parse_settings(parse_toml(task["config"], "config"), "config")
     asked = (requirement(task["require"]),) if task.get("require", "").strip() else ()
-    layout = settings.file if settings else None
-    rows = sum(len(read_table(path, layout)) for path in paths)
-    if rows > MOST_ROWS:
-        raise TableError(f"expected at most {MOST_ROWS} rows in all; got {rows}")
     models = [task["model"]] if task["model"] else None
-    found = calibrate(paths, settings, apply=task["apply"], models=models)
+    found = calibrate(paths, settings, apply=task["apply"], models=models, most_rows=MOST_ROWS)
     return products(found, "sun_sensor", "POST /v1/calibrations", Asked(asked))
 
 
@@ -232,8 +237,9 @@ def main(arguments: Sequence[str]) -> int:
 
     directory = Path(arguments[0])
     resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
-    seconds = int(LONGEST_S) + 5
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    seconds = int(LONGEST_S)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # no file keeps what it was sent
     (directory / _SAID).write_text(json.dumps(_answer(directory)), "utf-8")
     return 0
 

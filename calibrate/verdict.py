@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.angles import separation_deg
-from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
 from calibrate.halves import Halves
+from calibrate.places import hull_of_poses
 from calibrate.readings import Readings
 from calibrate.robust import nearest
 from calibrate.uncertainty import NORMAL_95, tangent_offsets
@@ -182,7 +182,7 @@ def next_poses(sun: Floats, count: int = _NEXT) -> tuple[Floats, float]:
     And the distance of the first, in usual steps between poses.
     """
     try:
-        hull = Hull.of_directions(sun, "poses")
+        hull = hull_of_poses(sun)
     except UnusableDataError:
         return np.empty((0, 3)), 0.0
     turns = np.arange(4000)

@@ -93,8 +93,8 @@ _RESPONSES: dict[int | str, dict[str, Any]] = {
 async def calibrations(request: Request) -> Response:
     """Compare models on the files' own readings, judge the best, and write flight code.
 
-    Same as `sunatlas calibrate`, with a limit of 60 s. Uploaded files are deleted after the answer,
-    or when the client hangs up.
+    Same as `sunatlas calibrate`, with a limit of 60 s of processor time. Uploaded files are deleted
+    after the answer, or when the client hangs up.
     """
     wanted = media_type(request.headers.get("accept"), OFFERED)
     given, files = await sent(request)

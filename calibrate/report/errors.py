@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.angles import separation_deg
-from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
 from calibrate.calibration import Calibration
-from calibrate.places import off_axis_deg
+from calibrate.places import hull_of_poses, off_axis_deg
 from calibrate.readings import Readings
 from calibrate.uncertainty import NORMAL_95, tangent_offsets
 
@@ -168,7 +167,7 @@ def field_of(sun: Floats, azimuths: int = _AZIMUTHS) -> Field | None:
     Of poses along one axis, the two ends.
     """
     try:
-        hull = Hull.of_directions(sun, "field")
+        hull = hull_of_poses(sun)
     except UnusableDataError:
         return _sweep(sun)
     off = np.arange(0.0, 180.25, 0.25)

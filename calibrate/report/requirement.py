@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
+from calibrate.places import hull_of_poses
 from calibrate.report.errors import THREE_SIGMA, Errors, fewest_for, field_of, level, ray
 
 _FORM = re.compile(
@@ -144,7 +144,7 @@ def _achieved(size: Floats, share: float | None) -> float:
 def _short_of(half: float, sun: Floats) -> float | None:
     """Return an azimuth at which poses end more than a step before an off-axis angle."""
     try:
-        hull = Hull.of_directions(sun, "requirement")
+        hull = hull_of_poses(sun)
     except UnusableDataError:  # along one axis, where a step is a hundredth of the sweep
         ends = field_of(sun)
         short = [] if ends is None else [at for at, reach in ends.reach if 1.01 * reach < half]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 from calibrate import uploaded
 from calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads
 
+ROOT = Path(__file__).resolve().parents[2]
 FILE = Upload("bench.csv", b"x_px,y_px,alpha,beta\n" + 5 * b"1,2,3,4\n")
 
 
@@ -38,6 +40,7 @@ def test_what_is_beyond_the_bounds_is_refused_before_a_process_starts(
     [
         (-9, "killed, most likely for want of memory"),
         (-11, "ended by SIGSEGV"),
+        (-24, "took over 60 s; send fewer rows"),
         (0, "ended without an answer"),
     ],
 )
@@ -68,6 +71,26 @@ def refusal(directory: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     assert uploaded.main([str(directory)]) == 0
     said = json.loads((directory / "said.json").read_text(encoding="utf-8"))
     return str(said["refused"])
+
+
+def test_more_rows_than_a_calibration_may_have_are_refused(
+    task: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(uploaded, "MOST_ROWS", 4)
+    assert refusal(task, monkeypatch) == "expected at most 4 rows in all; got 5"
+
+
+def test_a_process_is_bounded_by_the_time_of_the_processor(
+    task: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Others that keep the machine busy take nothing of it."""
+    begun = "from calibrate import uploaded as u; u.LONGEST_S = 2; u._answer = lambda _: spin()\n"
+    spin = "def spin():\n while True: pass\n"
+    code = f"{begun}{spin}u.main({[str(task)]!r})"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, timeout=600, check=False)
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: done)
+    with pytest.raises(UploadRefusedError, match="the calibration took over 60 s; send fewer rows"):
+        calibrate_uploads([FILE])
 
 
 @pytest.mark.parametrize("depth", [2_000, 19_000])

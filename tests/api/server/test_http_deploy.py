@@ -16,6 +16,7 @@ import pytest
 import typer
 
 from api.cli.commands.serve import app
+from api.service import calibrations
 from api.web import requests
 from calibrate.uploaded import LONGEST_S
 
@@ -49,10 +50,12 @@ def test_the_proxy_lets_through_what_the_service_takes_in_the_time_it_has():
     text = (ROOT / "deploy" / "Caddyfile").read_text()
     (size,) = re.findall(r"max_size ([\d.]+)MB", text)
     assert float(size) * 1e6 == requests.LARGEST_FORM
-    minutes = dict(re.findall(r"(read_body|write) (\d+)m", text))
+    minutes = dict(re.findall(r"(read_body|write|response_header_timeout) (\d+)m", text))
     slowest_s = requests.PATIENCE_S + requests.LARGEST_FORM / requests.SLOWEST_PER_S
+    turn_s = (calibrations.MOST_WAITING + 1) * LONGEST_S  # of who waits for all others
     assert float(minutes["read_body"]) * 60 > slowest_s
-    assert float(minutes["write"]) * 60 > slowest_s + LONGEST_S
+    assert float(minutes["response_header_timeout"]) * 60 > turn_s
+    assert float(minutes["write"]) * 60 > slowest_s + turn_s
 
 
 def copied():

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from algorithms.calibration.hull import Hull
 from algorithms.contract import FeatureKind
 from calibrate.calibration import Calibration
 from calibrate.documents import save
@@ -24,7 +25,8 @@ from calibrate.report.errors import (
 from calibrate.report.factory import compared_with
 from calibrate.report.page import Asked, outcomes, report
 from calibrate.report.requirement import RequirementError, judged, requirement
-from tests.calibrate.bench import HEADER, grid, spots, sun_of, write
+from calibrate.verdict import next_poses
+from tests.calibrate.bench import HEADER, grid, spots, sun_of, turn, write
 from tests.calibrate.samples import samples
 
 SUN = sun_of(grid(21, 40.0))
@@ -97,6 +99,25 @@ def test_the_field_of_a_square_reaches_farther_in_its_corners() -> None:
     assert reach[45.0] == field.most_deg == pytest.approx(corner, abs=0.26)
     aside = SUN[SUN[:, 0] > 0.2]
     assert field_of(aside) is None
+
+
+def test_the_cone_of_all_poses_is_found_once_a_calibration(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 100,000 poses it takes seconds; verdict, table and picture of the field look at it."""
+    found: list[str] = []
+    cone = Hull.of_directions
+
+    def counted(sun: np.ndarray, by: str, beyond: float = 0.0) -> Hull:
+        found.append(by)
+        return cone(sun, by, beyond)
+
+    monkeypatch.setattr(Hull, "of_directions", counted)
+    turned = SUN @ turn("z", 20.0)
+    assert len(next_poses(turned)[0])
+    narrow, wide = field_of(turned, 8), field_of(turned, 72)
+    assert found == ["poses"]
+    assert narrow is not None
+    assert wide is not None
+    assert set(narrow.reach) < set(wide.reach)
 
 
 @pytest.mark.parametrize(
