@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from algorithms.contract import FeatureKind, Floats, UnsuitableDesignError
 from algorithms.discovery import discover_extractors
 from algorithms.measurement import QualityFlag
+from calibrate.forms.pictures import picture_size
 from calibrate.roles import understood
 from calibrate.settings import ReadingsSettings, Settings, SettingsError
 from calibrate.table import SUFFIXES, Table, TableError, read_table
@@ -185,20 +187,16 @@ def _frame(directory: Path, name: str, place: str) -> tuple[NDArray[np.generic],
         raise TableError(f"{place}: there is no picture {name[:60]!r}") from None
     except FileRefusedError as error:
         raise TableError(f"{place}: {error.reason}") from None
-    try:
-        read = np.frombuffer(data, np.uint8)
-        picture = cv2.imdecode(read, cv2.IMREAD_UNCHANGED) if data else None
-    except (cv2.error, MemoryError):  # OpenCV's own limit, 2^30 pixels
-        raise TableError(
-            f"{place}: expected a picture of at most {_MOST_PIXELS} pixels; got more"
-        ) from None
+    size = picture_size(data)
+    if size is not None and size[0] * size[1] > _MOST_PIXELS:
+        most = f"expected a picture of at most {_MOST_PIXELS} pixels"
+        raise TableError(f"{place}: {most}; got {_words(size[::-1])}")
+    picture = None
+    with suppress(cv2.error, MemoryError):
+        if size is not None:
+            picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     if picture is None:
         raise TableError(f"{place}: expected a PNG, TIFF, BMP or JPEG picture; got {name[:60]!r}")
-    if picture.shape[0] * picture.shape[1] > _MOST_PIXELS:
-        raise TableError(
-            f"{place}: expected a picture of at most {_MOST_PIXELS} pixels; got "
-            f"{_words(picture.shape)}"
-        )
     if picture.ndim == 2:
         return picture, False
     colours = picture[:, :, :3]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import struct
 from pathlib import Path
 
 import cv2
@@ -11,6 +12,7 @@ import pytest
 from bench import grid, sun_of
 
 from calibrate.calibration import calibrate
+from calibrate.forms.pictures import picture_size
 from calibrate.settings import Settings, SettingsError
 from calibrate.sources import SPOT, with_spots
 from calibrate.table import Table, TableError
@@ -135,21 +137,59 @@ def test_a_picture_of_another_size_is_refused_by_its_row(tmp_path: Path) -> None
         one_picture(tmp_path / "run", usual, usual[:50])
 
 
-def test_a_picture_of_too_many_pixels_is_refused(tmp_path: Path) -> None:
-    import struct
-    import zlib
+@pytest.mark.parametrize(
+    "suffix", [".png", ".jpg", ".bmp", ".tiff", ".pgm", ".ppm", ".webp", ".jp2"]
+)
+def test_the_size_of_a_picture_is_that_of_its_head(suffix: str) -> None:
+    """OpenCV reads more forms than those whose heads are read first, and which are taken."""
+    made = np.zeros((37, 211) if suffix == ".pgm" else (37, 211, 3), dtype=np.uint8)
+    whole, file = cv2.imencode(suffix, made)
+    assert whole
+    known = None if suffix in {".webp", ".jp2"} else (211, 37)
+    assert picture_size(file.tobytes()) == known
+    if known:
+        assert all(picture_size(file.tobytes()[:end]) in {None, known} for end in range(300))
 
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        )
 
-    head = struct.pack(">IIBBBBB", 50_000, 50_000, 8, 0, 0, 0, 0)
+HEADS = {
+    "png": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + struct.pack(">II", 50_000, 50_000),
+    "bmp": b"BM" + bytes(12) + struct.pack("<Iii", 40, 50_000, -50_000),
+    "bmp of OS/2": b"BM" + bytes(12) + struct.pack("<IHH", 12, 50_000, 50_000),
+    "jpeg": b"\xff\xd8\xff\xe1\0\x06\xff\xc0ab\xff\xff\xc2"
+    + struct.pack(">HBHH", 17, 8, 50_000, 50_000),
+    "tiff": struct.pack("<2sHIH", b"II", 42, 8, 2)
+    + struct.pack("<HHII", 256, 4, 1, 50_000)
+    + struct.pack("<HHIHH", 257, 3, 1, 50_000, 0),
+    "tiff in tiles": struct.pack(">2sHIH", b"MM", 42, 8, 4)
+    + b"".join(struct.pack(">HHII", tag, 4, 1, 60) for tag in (256, 257))
+    + b"".join(struct.pack(">HHII", tag, 4, 1, 50_000) for tag in (322, 323)),
+    "large tiff": struct.pack("<2sHHHQQ", b"II", 43, 8, 0, 16, 2)
+    + b"".join(struct.pack("<HHQQ", tag, 16, 1, 50_000) for tag in (256, 257)),
+    "pgm": b"P5# 3 3\n\t50000 #4\r50000\n255\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"\xff\xd8\xff\0" + struct.pack(">HHBHH", 9, 0xFFC0, 8, 9, 9) + HEADS["jpeg"][2:],
+        HEADS["tiff"].replace(struct.pack("<HH", 257, 3), struct.pack("<HH", 257, 9)),
+        HEADS["png"].replace(b"IHDR", b"pHYs"),
+    ],
+    ids=["jpeg", "tiff", "png"],
+)
+def test_a_head_that_decoders_read_in_different_ways_is_that_of_no_picture(head: bytes) -> None:
+    assert picture_size(head) is None
+
+
+@pytest.mark.parametrize("form", HEADS)
+def test_a_picture_of_too_many_pixels_is_refused_before_a_pixel_is_decoded(
+    form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cv2, "imdecode", lambda *_: pytest.fail("pixels are decoded"))
     path = tmp_path / "large.png"
-    path.write_bytes(
-        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", b"") + chunk(b"IEND", b"")
-    )
-    with pytest.raises(TableError, match="row 2: expected a picture of at most 100000000 pixels"):
+    path.write_bytes(HEADS[form])
+    with pytest.raises(TableError, match=r"row 2: .* 100000000 pixels; got 50000 x 50000 pixels"):
         one_picture(tmp_path / "run", path)
 
 
