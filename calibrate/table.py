@@ -30,8 +30,9 @@ __all__ = ["SUFFIXES", "Table", "TableError", "read_table"]
 
 #: Largest file, and most rows and columns that are read of one.
 LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
-#: Bytes that an archive may unpack to, and cells of a table.
+#: Bytes that a file may unpack to, and the text of its cells take; cells of a table.
 _MOST_UNPACKED, _MOST_CELLS = 1024 * 1024 * 1024, 60_000_000
+_AT_ONCE = 64 * 1024 * 1024
 #: Endings of the files that are read.
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".parquet", ".npz", ".npy", ".xlsx")
 
@@ -184,6 +185,7 @@ def _of_frame(  # noqa: PLR0917 - what a table is made of
     unread: dict[str, tuple[int, str]] = {}
     units = dict(stated or {})
     said = list(notes)
+    size = 0
     first_row, rows, header = place
     for name in frame.columns:
         column = frame[name]
@@ -196,8 +198,16 @@ def _of_frame(  # noqa: PLR0917 - what a table is made of
         text = _as_text(column)
         found = numbers_of(text, decimal, of_time="time" in read.bare)
         if found.wrong.any():
-            at = int(np.argmax(found.wrong))
-            unread[name] = (int(rows[at]) if rows is not None else at + first_row, text.iloc[at])
+            lengths = text.str.len()
+            size += 4 * len(text) * int(lengths.max())  # an array gives each cell the same room
+            at = int(np.argmax(lengths if size > _MOST_UNPACKED else found.wrong))
+            row = int(rows[at]) if rows is not None else at + first_row
+            if size > _MOST_UNPACKED:
+                raise TableError(
+                    f"{source}, row {row}, column {name}: expected a short text; got one of "
+                    f"{lengths.iloc[at]} characters in a column of {len(text)} cells"
+                )
+            unread[name] = (row, text.iloc[at])
             columns[name] = text.to_numpy(dtype=str)
             continue
         columns[name] = found.values
@@ -224,10 +234,7 @@ def _as_text(column: pd.Series[str]) -> pd.Series[str]:
 
 def _read_parquet(data: bytes, source: str) -> Table:
     try:
-        from pyarrow.parquet import read_metadata  # noqa: PLC0415 - for such files only
-
-        stated = read_metadata(io.BytesIO(data))
-        _require_cells(stated.num_rows, stated.num_columns, source)
+        _require_columns(data, source)
         frame = pd.read_parquet(io.BytesIO(data))
     except TableError:
         raise
@@ -236,6 +243,36 @@ def _read_parquet(data: bytes, source: str) -> Table:
     _require_names([str(name) for name in frame.columns], source)
     frame.columns = [str(name) for name in frame.columns]
     return _of_frame(frame, source)
+
+
+def _require_columns(data: bytes, source: str) -> None:
+    """Refuse what a Parquet file states, and text that unfolds to more: it holds a value once."""
+    from pyarrow.parquet import ParquetFile  # noqa: PLC0415 - for such files only
+    from pyarrow.types import is_dictionary  # noqa: PLC0415
+
+    file = ParquetFile(io.BytesIO(data))
+    stated = file.metadata
+    _require_cells(stated.num_rows, stated.num_columns, source)
+    groups = [stated.row_group(at) for at in range(stated.num_row_groups)]
+    chunks = [group.column(at) for group in groups for at in range(group.num_columns)]
+    if (cells := sum(chunk.num_values for chunk in chunks)) > _MOST_CELLS:  # lists, in cells
+        raise TableError(f"{source}: expected at most {_MOST_CELLS} cells; got {cells}")
+    _require_bytes(sum(chunk.total_uncompressed_size for chunk in chunks), source)
+    texts = [chunk for chunk in chunks if chunk.physical_type == "BYTE_ARRAY"]
+    if not texts:
+        return
+    longest = max(chunk.total_uncompressed_size for chunk in texts)  # no value is longer
+    rows = min(max(_AT_ONCE // max(longest, 1), 1), 10_000)
+    size = 0
+    for batch in file.iter_batches(rows, columns=sorted({chunk.path_in_schema for chunk in texts})):
+        for column in batch.columns:
+            each = column.dictionary_decode() if is_dictionary(column.type) else column
+            _require_bytes(size := size + each.nbytes, source)
+
+
+def _require_bytes(size: int, source: str) -> None:
+    if size > _MOST_UNPACKED:
+        raise TableError(f"{source}: expected at most {_MOST_UNPACKED} bytes unpacked; got {size}")
 
 
 def _read_excel(data: bytes, source: str, stated: FileSettings) -> Table:
@@ -302,8 +339,7 @@ def _require_array(file: IO[bytes], source: str) -> None:
     rows, *others = shape or (1,)
     _require_cells(rows, math.prod(others) * len(dtype.names or (0,)), source)
     size = math.prod(shape) * dtype.itemsize
-    if size > _MOST_UNPACKED:
-        raise TableError(f"{source}: expected at most {_MOST_UNPACKED} bytes; got {size}")
+    _require_bytes(size, source)
 
 
 def _require_unpacked(data: bytes, source: str) -> None:
@@ -313,10 +349,7 @@ def _require_unpacked(data: bytes, source: str) -> None:
             size = sum(member.file_size for member in archive.infolist())
     except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
         raise TableError(f"{source}: expected a ZIP archive ({error})") from None
-    if size > _MOST_UNPACKED:
-        raise TableError(
-            f"{source}: expected an archive of at most {_MOST_UNPACKED} bytes unpacked; got {size}"
-        )
+    _require_bytes(size, source)
 
 
 def _require_cells(rows: int, columns: int, source: str) -> None:

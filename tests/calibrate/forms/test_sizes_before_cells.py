@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import openpyxl
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from calibrate.table import TableError, read_table
@@ -56,8 +58,12 @@ def head(shape: tuple[int, ...], kind: Any) -> bytes:
     [
         ((100_000_000,), "<f8", "at most 2000000 rows"),
         ((1_000, 501), "<f8", "500 columns"),
-        ((600,), [("a", "<U1000000"), ("b", "<f8")], "at most 1073741824 bytes; got 2400004800"),
-        ((600, 10), [("a", "<U100000"), ("b", "<f8")], "bytes; got 2400048000"),
+        (
+            (600,),
+            [("a", "<U1000000"), ("b", "<f8")],
+            "at most 1073741824 bytes unpacked; got 2400004800",
+        ),
+        ((600, 10), [("a", "<U100000"), ("b", "<f8")], "bytes unpacked; got 2400048000"),
     ],
 )
 @pytest.mark.parametrize("suffix", [".npy", ".npz"])
@@ -70,5 +76,48 @@ def test_arrays_are_refused_by_their_heads(
     if suffix == ".npz":
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("x_px.npy", head(shape, kind))
+    with pytest.raises(TableError, match=said):
+        read_table(path)
+
+
+def coded(path: Path, rows: int, values: list[str], kept: bool) -> Path:
+    """A Parquet file of a column of text that holds each value once; `kept`: for pandas too."""
+    places = pa.array(np.arange(rows, dtype=np.int32) % len(values))
+    runs = pa.DictionaryArray.from_arrays(places, pa.array(values))
+    table = pa.table({"x_px": np.arange(float(rows)), "run": runs})
+    pq.write_table(table, path, store_schema=kept)
+    return path
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_text_that_unfolds_to_gigabytes_is_refused_before_cells_are_read(
+    kept: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """12,000 cells of 100,000 letters, in 0.2 MB."""
+    path = coded(tmp_path / "a.parquet", 12_000, ["b" * 100_000], kept)
+    assert path.stat().st_size < 300_000
+    monkeypatch.setattr(pd, "read_parquet", lambda *_, **__: pytest.fail("cells are read"))
+    with pytest.raises(TableError, match="at most 1073741824 bytes unpacked"):
+        read_table(path)
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_names_of_runs_are_read_however_often_they_stand(kept: bool, tmp_path: Path) -> None:
+    found = read_table(coded(tmp_path / "a.parquet", 30_000, ["cold", "hot"], kept))
+    assert found.columns["run"][-2:].tolist() == ["cold", "hot"]
+
+
+def test_lists_of_many_numbers_in_a_few_cells_are_refused_by_their_count(tmp_path: Path) -> None:
+    path = tmp_path / "a.parquet"
+    pq.write_table(pa.table({"x_px": [[0.0] * 2_100_000] * 30}), path)
+    with pytest.raises(TableError, match="at most 60000000 cells; got 63000000"):
+        read_table(path)
+
+
+def test_a_long_text_in_a_long_column_is_named_by_its_row(tmp_path: Path) -> None:
+    """An array of text would give each cell the room of the longest: 40 GB."""
+    path = tmp_path / "a.csv"
+    path.write_text("x_px,note\n" + "1,a\n" * 100_000 + f"1,{'b' * 100_000}\n")
+    said = r"row 100002, column note: .* one of 100000 characters in a column of 100001 cells"
     with pytest.raises(TableError, match=said):
         read_table(path)
