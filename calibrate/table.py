@@ -33,6 +33,8 @@ LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
 #: Bytes that a file may unpack to, and the text of its cells take; cells of a table.
 _MOST_UNPACKED, _MOST_CELLS = 1024 * 1024 * 1024, 60_000_000
 _AT_ONCE = 64 * 1024 * 1024
+#: Rows and cells of all sheets of a workbook, of which each takes 10 us to read.
+_MOST_OF_WORKBOOK = 5_000_000
 #: Endings of the files that are read.
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".parquet", ".npz", ".npy", ".xlsx")
 
@@ -278,10 +280,15 @@ def _require_bytes(size: int, source: str) -> None:
 def _read_excel(data: bytes, source: str, stated: FileSettings) -> Table:
     _require_unpacked(data, source)
     try:
-        rows, columns = extent_of_workbook(data)
+        rows, columns, elements = extent_of_workbook(data, _MOST_OF_WORKBOOK)
     except Exception as error:  # noqa: BLE001 - zipfile raises many kinds for damaged files
         raise TableError(f"{source}: expected an Excel workbook ({str(error)[:80]})") from None
     _require_cells(rows, columns, source)
+    if elements > _MOST_OF_WORKBOOK:
+        raise TableError(
+            f"{source}: expected at most {_MOST_OF_WORKBOOK} rows and cells in a workbook, filled "
+            "or empty; got more: save the sheet as CSV"
+        )
     return _of_cells(cells_of_workbook(data, source, stated, MOST_ROWS), source)
 
 

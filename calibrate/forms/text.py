@@ -26,6 +26,8 @@ from calibrate.forms.layout import (
 )
 from calibrate.settings import FileSettings
 
+#: A row, a cell that does not state its place, another cell, and a text that cells refer to.
+_ELEMENT = re.compile(rb"<(?:\w+:)?(?:(row)|(c)(?![^<>]*\sr=)|c|si)(?=[\s/>])")
 #: A filled cell of a sheet by its place, and bytes that a sheet is looked through at a time.
 _FILLED = re.compile(
     rb'<(?:\w+:)?c\s(?:[^<>]*?\s)?r="([A-Z]{1,3})([0-9]{1,7})"[^<>]*(?<!/)>(?=[^<]|<[^/])'
@@ -223,25 +225,33 @@ def _notes(encoding: str, separator: str, decimal: str, layout: Layout, comments
     return said
 
 
-def extent_of_workbook(data: bytes) -> tuple[int, int]:
-    """Return the last row and the last column of any sheet that a filled cell stands in.
+def extent_of_workbook(data: bytes, most: int) -> tuple[int, int, int]:
+    """Return the last row and column of any sheet that a filled cell stands in, and its elements.
 
     By the cells' own places, before any is read: a reader makes every cell up to the last one.
+    Elements are rows, cells, filled or empty, and texts; it is read on to `most` of them.
     """
-    rows, columns = 0, b""
+    rows, columns, width, count = 0, b"", 0, 0
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         for name in archive.namelist():
             with archive.open(name) as part:
-                text = b""
-                while more := part.read(_STEP):
+                text, row = b"", b""
+                while (more := part.read(_STEP)) and count <= most:
                     text = text[-_LONGEST_TAG:] + more
-                    for column, row in _FILLED.findall(text):
-                        rows = max(rows, int(row))
+                    for column, number in _FILLED.findall(text):
+                        rows = max(rows, int(number))
                         columns = max(columns, column.rjust(3))
-    width = 0
+                    elements = _ELEMENT.findall(more)
+                    count += len(elements)
+                    in_rows = (row + b"".join(begin[:1] + cell for begin, cell in elements)).split(
+                        b"r"
+                    )
+                    width = max(width, *map(len, in_rows))
+                    row = in_rows[-1]
+    placed = 0
     for letter in columns.strip():
-        width = 26 * width + letter - ord("A") + 1
-    return rows, width
+        placed = 26 * placed + letter - ord("A") + 1
+    return rows, max(width, placed), count
 
 
 def cells_of_workbook(data: bytes, source: str, stated: FileSettings, most_rows: int) -> Cells:
