@@ -123,6 +123,8 @@ def _filled_rows(name: str, sheet: Any, formulas: Any) -> Iterator[Row]:
     formulas.reset_dimensions()
     count = filled = 0
     for number, (row, written) in enumerate(zip(sheet.rows, formulas.rows, strict=True), 1):
+        if not row and number <= _LAST_ROW:  # of a million before a cell far down
+            continue
         texts = [
             _text(f"sheet {sheet.title}", cell, formula)
             for cell, formula in zip(row, written, strict=True)
