@@ -70,7 +70,7 @@ def _of_tiff(data: bytes, order: str, big: bool) -> tuple[int, int] | None:
     (at,) = struct.unpack_from(f"{order}Q" if big else f"{order}I", data, 8 if big else 4)
     (count,) = struct.unpack_from(f"{order}Q" if big else f"{order}H", data, at)
     first, length, value = (8, 20, 12) if big else (2, 12, 8)
-    stated = {}
+    stated: dict[int, int] = {}
     for entry in range(at + first, at + first + min(count, 2**16) * length, length):
         tag, kind = struct.unpack_from(f"{order}HH", data, entry)
         if tag in (*_SIDES, *_TILE):
