@@ -25,7 +25,8 @@ Row = Mapping[str, Any]
 
 #: Colour (Okabe and Ito: told apart by every kind of colour vision), marker, fill, size and name.
 _MARKS: Mapping[str, tuple[str, str, str, float, str]] = {
-    "best": ("#0072b2", "o", "full", 4.5, "best calibration measured"),
+    "flight": ("#cc79a7", "D", "full", 4, "best calibration, in flight"),
+    "best": ("#0072b2", "o", "full", 4.5, "the same, own error"),
     "used": ("#d55e00", "o", "none", 7, "best that a mapped study used"),
     "built": ("#009e73", "^", "full", 4.5, "built sensors, published"),
     "bound": ("#1a1d21", "|", "full", 8, "Cramer-Rao bound, unit known"),
@@ -91,7 +92,7 @@ def figure() -> Figure:
     """Draw the same as a figure of Matplotlib."""
     from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
 
-    rows = sorted(_architectures(), key=lambda row: row["own_error_deg"] or 1e9, reverse=True)
+    rows = sorted(_architectures(), key=_first_deg, reverse=True)
     drawn = Figure(figsize=(_WIDTH_IN, _ROW_IN * len(rows) + _FRAME_IN), layout="constrained")
     axes = drawn.subplots()
 
@@ -103,22 +104,23 @@ def figure() -> Figure:
     for height, row in enumerate(rows):
         if row["own_error_deg"] is None:
             continue
-        ends = [row["bound_deg"], row["own_error_deg"]]
-        axes.plot(ends, [height] * 2, color="#c5ccd3", linewidth=1.2)
+        ends = [row["bound_deg"], row["own_error_deg"], _first_deg(row)]
+        axes.plot(ends, [height] * 3, color="#c5ccd3", linewidth=1.2)
         mark("bound", ends[:1], height)
         built = built_sensors().get((row["detector"], row["mask"]), ())
         mark("built", [error for error in built if error >= row["bound_deg"]], height)
         mark("built", [error for error in built if error < row["bound_deg"]], height, "none")
         used = [other["own_error_deg"] for other in _boards()[row["dataset"]] if other["studies"]]
         mark("used", sorted(used)[:1], height)
-        mark("best", ends[1:], height)
+        mark("best", ends[1:2], height)
+        mark("flight", ends[2:], height)
     axes.set_xscale("log")
     axes.set_yticks(
         range(len(rows)), [f"{row['detector']}, {row['mask']}" for row in rows], fontsize="small"
     )
     axes.set_ylim(-0.8, len(rows) - 0.2)
     axes.set_xlabel(
-        f"Own error of the direction to the Sun, deg (nominal condition)\n{_OTHER}",
+        f"Error of the direction to the Sun, deg\n{_OTHER}",
         fontsize="small",
     )
     axes.grid(axis="x", color="#e3e7eb")
@@ -127,8 +129,13 @@ def figure() -> Figure:
     axes.tick_params(axis="y", length=0)
     for colour, marker, fill, _, name in _MARKS.values():
         axes.plot([], [], marker, color=colour, label=name, fillstyle=fill)
-    drawn.legend(loc="outside upper center", ncols=4, frameon=False, fontsize="small")
+    drawn.legend(loc="outside upper center", ncols=5, frameon=False, fontsize="small")
     return drawn
+
+
+def _first_deg(row: Row) -> float:
+    """Return the error in flight, or the own error of what was not flown; large for neither."""
+    return float(row["flight_error_deg"] or row["own_error_deg"] or 1e9)
 
 
 @cache
