@@ -14,6 +14,7 @@ from registry.answer import Answer, RankedArchitecture
 from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.ranking import SORTS
 from registry.recommendation import recommend
+from registry.requirements import LEVELS
 from registry.studies import Facts
 from tests.registry.brute_force import OF_PRODUCTS, BruteForce, Report, expanded, of_product
 from tests.registry.drawn_questions import drawn_questions
@@ -21,6 +22,7 @@ from tests.registry.drawn_questions import drawn_questions
 STATES = {True: "meets", False: "misses", None: "unknown"}
 STATED = ("max_error_deg", "min_fov_deg", "accuracy", "exclude_accuracy", *OF_PRODUCTS)
 SILENT = ("min_availability", "max_latency_us", "tolerate", "exclude_needs")
+Levels = Mapping[str, BruteForce]
 Evidence = tuple[Sequence[Report], Sequence[tuple[float, MeasuredPipeline]]]
 
 
@@ -34,15 +36,20 @@ def timed(published: Measurements) -> Measurements:
 
 
 @pytest.fixture(scope="module")
-def brute_force(survey: Facts, timed: Measurements) -> BruteForce:
-    return BruteForce(survey, timed)
+def brute_force(survey: Facts, timed: Measurements) -> Levels:
+    return by_level(survey, timed)
+
+
+def by_level(facts: Facts, measured: Measurements) -> Levels:
+    """Return brute force on what was measured in flight, and on own errors."""
+    return {level: BruteForce(facts, measured.at(level)) for level in LEVELS}
 
 
 @pytest.mark.parametrize(
     ("number", "seed"), [(20, 11), pytest.param(500, 50, marks=pytest.mark.slow)]
 )
 def test_architectures_evidence_and_order_are_those_of_brute_force(
-    number: int, seed: int, timed: Measurements, brute_force: BruteForce
+    number: int, seed: int, timed: Measurements, brute_force: Levels
 ) -> None:
     answered = _compare(number, seed, timed, brute_force)
     assert answered > number // 2
@@ -50,33 +57,36 @@ def test_architectures_evidence_and_order_are_those_of_brute_force(
 
 def test_where_nothing_is_measured_reports_answer(survey: Facts) -> None:
     nothing = Measurements()
-    assert _compare(40, 12, nothing, BruteForce(survey, nothing)) > 10
+    assert _compare(40, 12, nothing, by_level(survey, nothing)) > 10
 
 
 def test_tasks_and_errors_are_of_one_study_or_each_of_them_advised(
-    survey: Facts, timed: Measurements, brute_force: BruteForce
+    survey: Facts, timed: Measurements, brute_force: Levels
 ) -> None:
+    brute = brute_force["flight"]
     values = [survey.taxonomy.values(name) for name in ("task", "error")]
     for task, error in product(*values):
         question = recommend({"task": task, "error": error}, timed).question
         places = zip(question.table.places, question.places, strict=True)
         found = {place.architecture for place, is_in in places if is_in}
         ask = {"task": [task], "error": [error]}
-        assert found == {pair for pair in brute_force.pairs if brute_force.in_scope(ask, pair)}
+        assert found == {pair for pair in brute.pairs if brute.in_scope(ask, pair)}
 
 
-def _compare(number: int, seed: int, measured: Measurements, brute_force: BruteForce) -> int:
+def _compare(number: int, seed: int, measured: Measurements, brute_force: Levels) -> int:
     """Check drawn questions, and return to how many there is an answer."""
     answered = 0
-    for at, ask in enumerate(drawn_questions(number, seed, brute_force.facts)):
-        sort = SORTS[max(0, at % 5 - 2)]
-        answer, expected = recommend(ask, measured, sort=sort), brute_force.answer(ask)
+    for at, ask in enumerate(drawn_questions(number, seed, brute_force["own"].facts)):
+        sort, level = SORTS[max(0, at % 5 - 2)], LEVELS[at % 2]
+        brute = brute_force[level]
+        answer = recommend({**ask, "level": level}, measured, sort=sort)
+        expected = brute.answer(ask)
         found = {one.place.architecture: one for one in answer.architectures}
         assert set(found) == set(expected), ask
         assert (answer.explanation is None) == bool(found), ask
         for pair, one in found.items():
             assert len(list(answer.calibrations(one))) == one.calibrations
-            _agrees(one, expected[pair], expanded(ask), brute_force)
+            _agrees(one, expected[pair], expanded(ask), brute)
         _is_in_order(answer, expected)
         answered += bool(found)
     return answered

@@ -123,7 +123,7 @@ def test_architectures_advised_for_a_task_are_in_its_answer_and_marked(published
 
 def test_albedo_changes_the_order_of_errors_of_coarse_sensors(published):
     def order(**asked):
-        found = recommend({"mask": "Maskless", **asked}, published, sort="error")
+        found = recommend({"mask": "Maskless", "level": "own", **asked}, published, sort="error")
         measured = [a for a in found.architectures if "measured" in a.meets]
         errors = {a.place.architecture: a.best.own.error_deg for a in measured}
         return sorted(errors, key=errors.get), errors
