@@ -30,7 +30,7 @@ class Description:
     ----------
     draft : body of a draft
     version, released : of the bundle; the day as YYYY-MM-DD
-    unfilled : fields of CITATION.cff that are missing or placeholders
+    unfilled : fields of CITATION.cff that are missing
     """
 
     draft: dict[str, Any]
