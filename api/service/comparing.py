@@ -75,31 +75,10 @@ def _compare(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
 def compare_pipelines(
     known: Knowledge, dataset: str, pipelines: Sequence[str], condition: str | None = None
 ) -> dict[str, Any]:
-    """Compare pipelines on a data set.
+    """Compare pipelines ("extractor:model") on a data set, under its first condition by default.
 
-    Parameters
-    ----------
-    known : scores and studies
-    dataset : name of a standard data set
-    pipelines : two to four "extractor:model", by the names of the implementations
-    condition : condition of the data set; its first by default
-
-    Returns
-    -------
-    dict
-        ``dataset``, ``condition`` and ``items``: one item a pipeline, in the given order, with
-        names, own error, bound, availability, times and studies. ``needed_poses`` and the other
-        members of its learning curve are None for a pipeline without a curve (most have none).
-        ``conditions`` holds the error of unit 0 and its availability by condition, ``rings`` that
-        error by angle from the boresight. Undefined numbers are None; ``reason`` says why a
-        pipeline has no score. ``ratio_to_smallest`` is its own error over the smallest
-        compared. ``partial_answer`` is for architectures only, and None here.
-
-    Raises
-    ------
-    InvalidValueError
-        If the data set has no such condition, if there are fewer than two or more than four
-        pipelines, or if a pipeline is not scored on the data set.
+    Items are in the given order. InvalidValueError if the data set has no such condition, if there
+    are fewer than two or more than four pipelines, or if one is not scored on the data set.
     """
     _count("pipeline", pipelines)
     rows = known.measurements.board_rows(dataset)
@@ -120,28 +99,11 @@ def compare_pipelines(
 
 
 def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dict[str, Any]:
-    """Compare architectures, each by its most accurate pipeline under nominal conditions.
+    """Compare architectures ("detector:mask"), each by its most accurate nominal pipeline.
 
-    Parameters
-    ----------
-    known : scores and studies
-    architectures : two to four "detector:mask"
-
-    Returns
-    -------
-    dict
-        As `compare_pipelines`, but ``dataset`` and ``condition`` are None: each item has its own
-        data set, the one with the smallest error if an architecture has several. Fields of view
-        differ (``half_fov_deg``); ``rings`` compare at equal angles. ``partial_answer`` is a
-        pipeline below the availability limit that is far more accurate on the samples it
-        answers, or None (`benchmark.leaderboard.partial_answers.better_partial_answer`); each
-        condition has its own.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are fewer than two or more than four architectures, or if neither a data set nor a
-        study has one of them.
+    Each item has its own data set, the one with the smallest error if an architecture has several.
+    InvalidValueError if there are fewer than two or more than four architectures, or if neither a
+    data set nor a study has one of them.
     """
     _count("architecture", architectures)
     best = {
