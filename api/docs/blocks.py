@@ -8,15 +8,12 @@ ahead of it (`<!-- not run: REASON -->`).
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import io
 import re
 import shlex
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 from sybil import Document, Example
 from sybil.evaluators.python import PythonEvaluator
@@ -30,8 +27,6 @@ from api.cli.command_line import app
 NOT_RUN = ("make ", "git clone ", "sunatlas leaderboard --check", "sunatlas rank ")
 #: Columns of the terminal that pages are written for.
 WIDTH = "88"
-#: Where the pages' service listens.
-SERVED = "http://127.0.0.1:8000"
 
 _FENCED = RawFencedCodeBlockLexer(re.compile(r"(?P<language>[a-z]*)(?P<info>[^\n]*)\n"))
 _REASON = re.compile(r"<!-- not run: [^>]+ -->\s*\Z")
@@ -124,32 +119,8 @@ def _run(command: str) -> str | None:
             if done.exit_code:
                 raise BlockError(f"exit code {done.exit_code}: {done.output.strip()}")
             return _trimmed(done.stdout)
-        case ["curl", *_, address] if address.startswith(SERVED):
-            return _trimmed(asyncio.run(_ask(address)))
-        case ["cat", *names]:
-            return _trimmed("".join(Path(name).read_text("utf-8") for name in names))
-        case ["ls", *names]:
-            places = [Path(name) for name in names or ["."]]
-            return "".join(f"{p.name}\n" for place in places for p in sorted(place.iterdir()))
-    raise BlockError(f"expected sunatlas, cat, ls, or curl to {SERVED}; got {command}")
+    raise BlockError(f"expected sunatlas; got {command}")
 
 
 def _trimmed(text: str) -> str:
     return "".join(f"{line.rstrip()}\n" for line in text.strip("\n").splitlines())
-
-
-@cache
-def _service() -> Any:
-    from api.server.app import create_app  # noqa: PLC0415 - seconds, and few pages ask it
-
-    return create_app()
-
-
-async def _ask(address: str) -> str:
-    import httpx  # noqa: PLC0415 - needed to run pages, not to build the guide
-
-    async with httpx.AsyncClient(transport=httpx.ASGITransport(_service())) as client:
-        answer = await client.get(address)
-    if answer.status_code != 200:
-        raise BlockError(f"{answer.status_code}: {answer.text}")
-    return answer.text
