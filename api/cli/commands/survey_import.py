@@ -14,6 +14,7 @@ from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from survey_data import ImportPlan
+from survey_data.importing.bibliography import SUFFIXES
 
 IDENTITIES = ("study", "column", "kind", "identity", "ours", "theirs", "line")
 CELLS = ("study", "attribute", "kind", "ours", "theirs", "basis", "row", "column")
@@ -21,20 +22,13 @@ CELLS = ("study", "attribute", "kind", "ours", "theirs", "basis", "row", "column
 
 def import_(
     file: Annotated[
-        Path | None,
+        Path,
         typer.Argument(
-            help="CSV or XLSX table of studies, or the survey's bibliography (.bib).",
+            help="CSV or XLSX table of studies, or the survey's bibliography (.bib, .ris).",
             show_default=False,
         ),
-    ] = None,
+    ],
     *,
-    bibliography: Annotated[
-        Path | None,
-        typer.Option(
-            help="Bibliography of the survey, BibTeX, with any file name.",
-            show_default=False,
-        ),
-    ] = None,
     replace: Annotated[
         list[str] | None,
         typer.Option(
@@ -66,14 +60,10 @@ def import_(
     named on stderr with row and column, and the exit code is 1. From a bibliography title, authors,
     venue, type, DOI and address are taken; a confirmed identity is replaced only with --replace.
     """
-    if (file is None) == (bibliography is None):
-        raise WrongCallError("expected either a table or --bibliography FILE")
-    if file is not None and file.suffix.casefold() == ".bib":
-        file, bibliography = None, file
-    if file is None:
+    if file.suffix.casefold() in SUFFIXES:
         if mapped or sheet:
             raise WrongCallError("--map and --sheet are of a table, not of a bibliography")
-        _bibliography(bibliography, replace or (), data, form, apply=apply)
+        _bibliography(file, replace or (), data, form, apply=apply)
         return
     if replace:
         raise WrongCallError("--replace is of a bibliography, not of a table")
@@ -93,11 +83,9 @@ def import_(
 
 
 def _bibliography(
-    file: Path | None, replaced: Sequence[str], data: Path | None, form: Format, *, apply: bool
+    file: Path, replaced: Sequence[str], data: Path | None, form: Format, *, apply: bool
 ) -> None:
     """Compare a bibliography with the table of studies."""
-    if file is None:
-        return
     plan = survey_data.import_bibliography(file, data, replace_studies=replaced, apply=apply)
     rows = _rows(plan.differences)
     title = f"{len(rows)} cells of studies that {plan.source} says otherwise"

@@ -61,7 +61,7 @@ def odd(tmp_path):
         ("survey check --data {odd}/file", 1, "directory"),
         ("survey import {odd}/empty", 1, r"{odd}/empty: .*file.*directory"),
         ("survey import {odd}/file --map a", 2, r"--map: .*COL=ATTRIBUTE.*'a'"),
-        ("survey import --bibliography {odd}/bytes.csv", 1, r"bytes\.csv\b.*UTF-8"),
+        ("survey import {odd}/bytes.csv", 1, r"bytes\.csv\b.*UTF-8"),
         ("dataset verify {odd}/empty", 1, r"{odd}/empty: .*dataset"),
         ("dataset export pd-slit --out {odd}/file", 1, r"{odd}/file: .*directory"),
         ("dataset preview pd-slit --out /proc/x.png", 1, "/proc: "),

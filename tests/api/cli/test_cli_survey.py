@@ -154,32 +154,16 @@ def test_a_bibliography_is_shown_and_then_taken_over(copy, tmp_path):
     bib = tmp_path / "refs.bib"
     bib.write_text("@article{Fan2017, author={Q. Fan}, title={A title}, year={2017}}\n", "utf-8")
     before = (copy / "studies.csv").read_bytes()
-    shown = survey("import", "--bibliography", bib, "--data", copy)
+    shown = survey("import", bib, "--data", copy)
     assert shown.exit_code == 0
     assert "--apply writes 3 cells and 1" in shown.stdout
     assert (copy / "studies.csv").read_bytes() == before
-    plan = json.loads(
-        survey("import", "--bibliography", bib, "--data", copy, "--format", "json").stdout
-    )
+    plan = json.loads(survey("import", bib, "--data", copy, "--format", "json").stdout)
     assert [d["column"] for d in plan["differences"]] == ["title", "authors", "type"]
     assert len(plan["missing"]) == 128
-    assert "written." in survey("import", "--bibliography", bib, "--data", copy, "--apply").stdout
-    again = survey("import", "--bibliography", bib, "--data", copy, "--apply")
+    assert "written." in survey("import", bib, "--data", copy, "--apply").stdout
+    again = survey("import", bib, "--data", copy, "--apply")
     assert "Nothing written." in again.stdout
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        (),
-        ("table.csv", "--bibliography", "refs.bib"),
-        ("--bibliography", "refs.bib", "--sheet", "a"),
-    ],
-)
-def test_an_import_is_of_one_thing(arguments):
-    shown = survey("import", *arguments)
-    assert shown.exit_code == 2
-    assert shown.stdout == ""
 
 
 @pytest.mark.parametrize("key", ["Liebe2001", "Herman2025c"])

@@ -56,7 +56,7 @@ IDLE = [
     ("studies --published --state complete", "--published --state"),
     (f"survey add {FILE} --key Doe2030", "--key bibliography"),
     ("survey add --init Doe2030 --format json", "--init --format"),
-    (f"survey import --bibliography {FILE} --sheet x", "--sheet bibliography"),
+    ("survey import refs.bib --sheet x", "--sheet bibliography"),
     (f"survey import {FILE} --replace Doe2030", "--replace bibliography"),
     ("verify --suite quick --seed 3", "--suite --seed"),
 ]
