@@ -226,12 +226,8 @@ class Addition:
         return self.rows["studies"][0]
 
 
-def read_addition(
-    document: TomlDocument, directory: Path = DATA_DIRECTORY, publication: Row | None = None
-) -> Addition:
+def read_addition(document: TomlDocument, directory: Path = DATA_DIRECTORY) -> Addition:
     """Read a template, by the rules of our tables, whose keys are taken.
-
-    What a bibliography says of the publication is overruled by the template's own words.
 
     Raises
     ------
@@ -248,7 +244,7 @@ def read_addition(
             faults.append(Fault(document.line((name,)), message))
     values = {name: each for name, each in document.values.items() if name in known}
     try:
-        study = OfferedStudy.model_validate({**(publication or {}), **values})
+        study = OfferedStudy.model_validate(values)
     except ValidationError as error:
         faults += [_fault(document, dict(each)) for each in error.errors(include_url=False)]
     if faults:

@@ -12,13 +12,12 @@ from survey_data.additions.offered import (
     Fault,
     FaultsError,
     Row,
-    TomlDocument,
     read_addition,
     read_toml,
 )
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.editions import EXTENSION_TABLES, FOLDER
-from survey_data.importing.bibliography import SUFFIXES, Entry, read_bibliography
+from survey_data.importing.bibliography import Entry, read_bibliography
 from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.nearest import one_of
 from survey_data.problems import SurveyImportError
@@ -31,35 +30,12 @@ class UnknownStudyError(SurveyImportError):
     """No study has this key, or one that cannot be taken away."""
 
 
-def read_study(
-    path: Path,
-    directory: Path = DATA_DIRECTORY,
-    *,
-    attributes: Path | None = None,
-    key: str | None = None,
-) -> Addition:
-    """Read a study from a TOML template, or from a bibliography with that of its attributes.
-
-    `attributes` is that template; by default the file of the same name that ends in .toml, if there
-    is one. What it says of the publication goes before. `key` chooses a publication of the
-    bibliography. FaultsError names every fault with file and line; SurveyImportError says what is
-    no bibliography.
-    """
-    if path.suffix.casefold() == ".toml":
-        if attributes is not None:
-            message = "a template has attributes of its own; --attributes goes with a bibliography"
-            raise FaultsError(path.name, [Fault(None, message)])
-        return read_addition(read_toml(path), directory)
-    beside = path.with_suffix(".toml") if attributes is None else attributes
-    document = TomlDocument(path.name, {}, {})
-    if attributes is not None or beside.is_file():
-        document = read_toml(beside)
-    stated_key = document.values.get("key")
-    wanted = key or (stated_key if isinstance(stated_key, str) else None)
-    publication = choose(read_publications(path), wanted, path.name)
-    stated = {"identity": "confirmed", "type": "unknown"}
-    publication = {**stated, **{name: value for name, value in publication.items() if value}}
-    return read_addition(document, directory, publication)
+def read_study(path: Path, directory: Path = DATA_DIRECTORY) -> Addition:
+    """Read a study from its template; FaultsError names every fault with file and line."""
+    if path.suffix.casefold() != ".toml":
+        expected = "expected a template that ends in .toml; `--init KEY` makes one"
+        raise FaultsError(path.name, [Fault(None, expected)])
+    return read_addition(read_toml(path), directory)
 
 
 def add_study(
@@ -150,22 +126,15 @@ def read_publications(path: Path) -> tuple[dict[str, str], ...]:
     A key that is no key of ours, or of another year, is made of the first author's surname and the
     year. SurveyImportError where the file cannot be read, or holds no publication.
     """
-    if path.suffix.casefold() not in SUFFIXES:
-        expected = ".toml, " + ", ".join(SUFFIXES)
-        raise FaultsError(path.name, [Fault(None, f"expected a file that ends in {expected}")])
     return tuple(_publication(entry) for entry in read_bibliography(path))
 
 
-def choose(publications: Sequence[dict[str, str]], key: str | None, file: str) -> dict[str, str]:
+def choose(publications: Sequence[dict[str, str]], key: str, file: str) -> dict[str, str]:
     """Return the publication of a key, or the only one; FaultsError where that is not clear."""
     keys = [each["key"] for each in publications]
-    if key in keys:
-        return publications[keys.index(key)]
-    if len(publications) == 1:
-        return {**publications[0], "key": key or keys[0]}
-    message = f"holds {len(keys)} publications: choose one with --key ({', '.join(keys[:12])})"
-    if key:
-        message = f"key {key!r}: {one_of(key, keys)}"
+    if key in keys or len(keys) == 1:
+        return {**publications[keys.index(key) if key in keys else 0], "key": key}
+    message = f"holds {len(keys)} publications; key {key!r}: {one_of(key, keys)}"
     raise FaultsError(file, [Fault(None, message)])
 
 

@@ -34,7 +34,7 @@ def add(
     context: typer.Context,
     file: Annotated[
         Path | None,
-        typer.Argument(help="TOML template, or bibliography (.bib, .ris).", show_default=False),
+        typer.Argument(help="TOML template of the study.", show_default=False),
     ] = None,
     *,
     init: Annotated[
@@ -46,20 +46,6 @@ def add(
             show_default=False,
         ),
     ] = None,
-    attributes: Annotated[
-        Path | None,
-        typer.Option(
-            help=(
-                "Template with the attributes, if FILE is a bibliography; by default the "
-                "same name with .toml."
-            ),
-            show_default=False,
-        ),
-    ] = None,
-    key: Annotated[
-        str | None,
-        typer.Option(help="Key of the publication in the bibliography.", show_default=False),
-    ] = None,
     apply: ApplyOption = False,
     data: DataOption = None,
     form: FormatOption = Format.TABLE,
@@ -69,20 +55,18 @@ def add(
     Shows its row, its values and which parts are implemented here. Added studies are kept apart
     from the survey; lists and figures include them with --edition all. Errors in the file are named
     on stderr with line and nearest valid value, and the exit code is 1. `--init KEY FILE.toml`
-    writes a template with all allowed values; `--init KEY FILE.bib` prints one with the publication
-    filled in.
+    writes a template with all allowed values; `--init KEY FILE.bib` (or .ris) prints one with the
+    publication filled in.
     """
     folder = data or DATA_DIRECTORY
-    if key is not None and (file is None or file.suffix.casefold() not in SUFFIXES):
-        raise WrongCallError("--key chooses in a bibliography, which FILE is not")
     if init is not None:
-        only_beside(context, "--init", "--key", "--data")
-        _write_template(init, file, key, folder)
+        only_beside(context, "--init", "--data")
+        _write_template(init, file, folder)
         return
     if file is None:
         raise WrongCallError("expected a file, or --init KEY for a template")
     try:
-        addition = read_study(file, folder, attributes=attributes, key=key)
+        addition = read_study(file, folder)
     except FaultsError as error:
         if form is Format.JSON:
             emit_json({"file": error.file, "faults": [each.to_dict() for each in error.faults]})
@@ -144,15 +128,15 @@ def verify(
     typer.echo("Written." if apply else "Nothing written; --apply writes it.")
 
 
-def _write_template(key: str, file: Path | None, chosen_key: str | None, folder: Path) -> None:
+def _write_template(key: str, file: Path | None, folder: Path) -> None:
     """Print an empty template, or write it into a file that is not there yet."""
     digits = "".join(letter for letter in key if letter.isdigit())
     publication = {"key": key, "year": digits}
     if taken := taken_by(key, folder):
         raise WrongCallError(f"--init: {key}: {taken}")
     if file is not None and file.suffix.casefold() in SUFFIXES:
-        found = choose(read_publications(file), chosen_key, file.name)
-        typer.echo(empty_template(folder, {**found, "key": key}), nl=False)
+        found = choose(read_publications(file), key, file.name)
+        typer.echo(empty_template(folder, found), nl=False)
         return
     text = empty_template(folder, publication)
     if file is None:

@@ -54,7 +54,6 @@ IDLE = [
     ("studies Chang2008 --edition survey", "key --edition"),
     ("studies Chang2008 --detector CMOS", "key --detector"),
     ("studies --published --state complete", "--published --state"),
-    (f"survey add {FILE} --key Doe2030", "--key bibliography"),
     ("survey add --init Doe2030 --format json", "--init --format"),
     ("survey import refs.bib --sheet x", "--sheet bibliography"),
     (f"survey import {FILE} --replace Doe2030", "--replace bibliography"),

@@ -13,7 +13,7 @@ import pytest
 
 import survey_data
 from survey_data.additions.offered import Addition, FaultsError, Row, parse_toml, read_addition
-from survey_data.additions.writing import read_study
+from survey_data.additions.writing import choose, read_publications, read_study
 from survey_data.problems import SurveyImportError
 from survey_data.texts import load_texts
 from tests.survey_data.additions.offered_study import content, offered
@@ -87,11 +87,10 @@ ER  -
 
 @pytest.mark.parametrize(("suffix", "text"), [("bib", BIBTEX), ("ris", RIS)])
 def test_a_publication_is_read_from_each_kind_of_bibliography(
-    recorded: Path, suffix: str, text: str
+    tmp_path: Path, suffix: str, text: str
 ) -> None:
-    path = offered(recorded, text, f"refs.{suffix}")
-    study = read_study(path, recorded).study
-    assert study == {
+    (found,) = read_publications(offered(tmp_path, text, f"refs.{suffix}"))
+    assert found == {
         "key": "Doe2030",
         "title": "A sun sensor that nobody built",
         "authors": "Jane Doe; Max Müller",
@@ -100,28 +99,24 @@ def test_a_publication_is_read_from_each_kind_of_bibliography(
         "type": "thesis",
         "doi": "10.1234/made.up",
         "url": "",
-        "identity": "confirmed",
-        "note": "",
     }
-    path.with_suffix(".toml").write_text('[[task]]\nvalue = "Power"\nbasis = "title"\n')
-    cells = read_study(path, recorded).rows["attributes"]
-    assert [row["value"] for row in cells if row["attribute"] == "task"] == ["Power"]
+    assert choose([found], "Doe2030b", "refs") == {**found, "key": "Doe2030b"}
 
 
-def test_one_of_several_publications_is_chosen_by_its_key(recorded: Path) -> None:
+def test_one_of_several_publications_is_chosen_by_its_key(tmp_path: Path) -> None:
     other = BIBTEX.replace("{doe,", "{roe,").replace("Jane", "Ann").replace("made.up", "other")
-    path = offered(recorded, BIBTEX + "\n" + other.replace("Doe,", "Roe,"), "refs.bib")
-    with pytest.raises(FaultsError, match=r"choose one with --key \(Doe2030, Roe2030\)"):
-        read_study(path, recorded)
-    assert read_study(path, recorded, key="Roe2030").study["doi"] == "10.1234/other"
-    with pytest.raises(FaultsError, match="did you mean Roe2030"):
-        read_study(path, recorded, key="Row2030")
+    text = BIBTEX + "\n" + other.replace("Doe,", "Roe,")
+    found = read_publications(offered(tmp_path, text, "refs.bib"))
+    assert choose(found, "Roe2030", "refs.bib")["doi"] == "10.1234/other"
+    with pytest.raises(FaultsError, match=r"holds 2 publications.*did you mean Roe2030"):
+        choose(found, "Row2030", "refs.bib")
 
 
 @pytest.mark.parametrize("text", ["", "{", '{"a": 1}', "[1]", "TY  - JOUR\n", "\x00\xff", "@x{,}"])
-@pytest.mark.parametrize("suffix", ["bib", "ris", "json", "toml", "pdf"])
+@pytest.mark.parametrize("suffix", ["bib", "ris", "toml", "pdf"])
 def test_what_is_no_study_is_refused(recorded: Path, suffix: str, text: str) -> None:
     before = content(recorded)
+    path = offered(recorded, text, f"refs.{suffix}")
     with pytest.raises(SurveyImportError):
-        read_study(offered(recorded, text, f"refs.{suffix}"), recorded)
+        read_publications(path) if suffix in {"bib", "ris"} else read_study(path, recorded)
     assert content(recorded) == before

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from survey_data.additions.offered import FaultsError, parse_toml, read_addition
+from survey_data.additions.offered import parse_toml, read_addition
 from survey_data.additions.writing import (
     add_study,
     read_publications,
@@ -55,12 +55,6 @@ def test_a_study_is_added_once(copy: Any) -> None:
     with pytest.raises(SurveyImportError, match="a study with the key Doe2030 was added already"):
         add_study(addition, copy.directory, apply=True)
     assert content(copy.directory) == before
-
-
-def test_a_template_has_attributes_of_its_own(recorded: Path) -> None:
-    path = offered(recorded)
-    with pytest.raises(FaultsError, match="--attributes goes with a bibliography"):
-        read_study(path, recorded, attributes=path)
 
 
 def test_a_role_needs_no_reason() -> None:

@@ -34,7 +34,6 @@ def add(*arguments: object) -> Any:
     ("arguments", "says"),
     [
         (("--init", "Doe2030", "--apply"), "--init goes without --apply"),
-        (("--init", "Doe2030", "--attributes", "a.toml"), "--init goes without --attributes"),
         ((), "expected a file, or --init KEY for a template"),
         (("--init", "Doe2030", "new.txt"), "a file that ends in .toml; got 'new.txt'"),
     ],
