@@ -52,20 +52,6 @@ def realism(
     return [_beside(every[name], best.get(name)) for name in compared_names]
 
 
-def unexplained_differences(table: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Say of each data set whose difference no sentence explains by how much it differs."""
-    return [
-        f"{row['dataset']}: accuracy {_times(row['accuracy_ratio'])}, precision "
-        f"{_times(row['precision_ratio'])} of the nearest built sensor's"
-        for row in table
-        if row["unexplained"]
-    ]
-
-
-def _times(ratio: float | None) -> str:
-    return "unknown" if ratio is None else f"{ratio:.3g} times"
-
-
 def _before(row: Row, other: Row | None) -> bool:
     place = (row["extractor"], row["model"])
     return other is None or order(row, place) < order(other, (other["extractor"], other["model"]))
