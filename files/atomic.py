@@ -16,9 +16,11 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from files.locks import wait_for_lock
+from files.locks import directory_lock, wait_for_lock
 
-SUFFIX = ".sunatlas"
+SUFFIX, _PREFIX = ".sunatlas", "sunatlas-"
+#: Seconds within which a directory that was made is locked.
+_UNLOCKED_S = 5.0
 #: Entries, of all depths, that a directory may hold whose files are replaced at once.
 MOST_OTHERS = 10_000
 
@@ -44,9 +46,21 @@ def replace_file(path: Path, content: str | bytes) -> bool:
 
 @contextmanager
 def temporary_directory() -> Iterator[Path]:
-    """Make a directory among the system's temporary files; it is gone at the end."""
-    with tempfile.TemporaryDirectory(SUFFIX, "sunatlas-") as path:
+    """Make a directory among the system's temporary files; it is gone at the end.
+
+    It is locked meanwhile, so that `sweep` knows it from one whose process was killed.
+    """
+    with tempfile.TemporaryDirectory(SUFFIX, _PREFIX) as path, directory_lock(Path(path)):
         yield Path(path)
+
+
+def sweep() -> None:
+    """Remove the temporary directories of this user whose processes are gone."""
+    for left in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*{SUFFIX}"):
+        with suppress(OSError):
+            if left.lstat().st_mtime < time.time() - _UNLOCKED_S:
+                with directory_lock(left, alone=True):
+                    shutil.rmtree(left)
 
 
 @contextmanager

@@ -61,6 +61,27 @@ def lock_or_refuse(place: Path) -> Iterator[None]:
         yield
 
 
+@contextmanager
+def directory_lock(directory: Path, *, alone: bool = False) -> Iterator[None]:
+    """Lock a directory, for as long as its process lives; `alone`: OSError where another has.
+
+    On Windows nothing is locked, and OSError is raised for `alone`.
+    """
+    try:
+        import fcntl  # noqa: PLC0415 - not on every system
+    except ImportError:
+        if alone:
+            raise OSError("directories cannot be locked here") from None
+        yield
+        return
+    opened = os.open(directory, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB if alone else fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(opened)
+
+
 def lock_path(place: Path) -> Path:
     """Return the path of a place's lock."""
     return place.with_name(f".{place.name}.lock")

@@ -6,6 +6,7 @@ import errno
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -19,6 +20,8 @@ from files.atomic import (
     replace_file,
     replace_in_directory,
     require_replaceable_directory,
+    sweep,
+    temporary_directory,
     temporary_directory_beside,
 )
 
@@ -253,3 +256,28 @@ def test_what_a_kill_left_a_day_ago_is_removed_and_nothing_else(tmp_path: Path) 
         assert made.stat().st_mode & 0o777 == 0o700
         assert set(names(tmp_path)) == {*expected, made.name}
     assert set(names(tmp_path)) == expected
+
+
+def test_directories_of_processes_that_are_gone_are_swept_and_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    code = (
+        "import os, sys, tempfile\nfrom pathlib import Path\nfrom files import atomic\n"
+        "tempfile.tempdir = sys.argv[1]\nwith atomic.temporary_directory() as made:\n"
+        " (made / 'bench.csv').write_bytes(b'x')\n os._exit(9)"
+    )
+    killed(code, tmp_path)
+    (left,) = tmp_path.iterdir()
+    others = [tmp_path / "sunatlas-a", tmp_path / "b.sunatlas", tmp_path / "sunatlas-c.sunatlas"]
+    for path in others[:2]:
+        path.mkdir()
+    others[2].symlink_to(tmp_path / "b.sunatlas", target_is_directory=True)
+    sweep()
+    assert left.is_dir(), "just made, it may not be locked yet"
+    monkeypatch.setattr(atomic, "_UNLOCKED_S", -1.0)
+    with temporary_directory() as held:
+        sweep()
+        assert not left.exists()
+        assert held.is_dir()
+        assert all(os.path.lexists(path) for path in others)
