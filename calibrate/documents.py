@@ -26,11 +26,9 @@ from calibrate.calibration import Calibration
 from calibrate.flight.program import Program, stored_program
 from calibrate.one_axis import AxisCurve
 from calibrate.places import Grazing, tangent_axes
-from calibrate.readings import readings_of
 from calibrate.recalibration import Correction
 from calibrate.selection import deviation_of, unbounded
 from calibrate.settings import Settings, parse_settings
-from calibrate.table import Table
 from calibrate.terms.corrections import (
     Corrected,
     features_in,
@@ -142,11 +140,6 @@ class SavedCalibration:
         for stage in self.compensations:
             features = stage.transform(features, columns)
         return features
-
-    def predict_table(self, table: Table) -> Floats:
-        """Return unit vectors of the usable rows of a file with the calibration's columns."""
-        readings = readings_of(table, self.settings)
-        return self.predict(readings.features, readings.context)
 
 
 def document(
