@@ -15,6 +15,7 @@ from benchmark.datasets.pins import Pin
 from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import is_available
+from benchmark.metrics.separation import store
 from registry.catalogue import catalogue
 from registry.draws import FEWEST_UNITS, unit_ratios
 from registry.fitting import stages
@@ -55,7 +56,8 @@ def pipelines(
     conditions = {name: datasets.get(name).conditions for name in datasets.names()}
     needs = {name: _needs(scored.about.context) for name, scored in catalogue().models.items()}
     aloft = {name for name in conditions if datasets.get(name).context_columns}
-    spread = _spreads(by)
+    spread = _spreads(by, {name: of_it[0] for name, of_it in conditions.items()})
+    of_flight, luck = _spreads(by, dict.fromkeys(conditions, FLIGHT)), _luck(by)
     found = []
     for place, scores in by.items():
         dataset, extractor, model = place
@@ -65,7 +67,9 @@ def pipelines(
         if first is None:
             continue
         own = _over_units(scores, first["condition"])
-        flight = own if dataset in aloft else _over_units(scores, FLIGHT)
+        flight = own
+        if dataset not in aloft:
+            flight = _over_units(scores, FLIGHT, luck.get(dataset, 1.0))
         if own is None:
             continue
         units, nominal = own
@@ -93,7 +97,10 @@ def pipelines(
                 needs=needs[model],
                 flight=flight[1] if flight else None,
                 flight_units_deg=flight[0] if flight else (),
-                flight_ratios=unit_ratios(flight[0] if flight else (), spread.get(dataset, 0.0)),
+                flight_ratios=unit_ratios(
+                    flight[0] if flight else (),
+                    of_flight.get(dataset, spread.get(dataset, 0.0)),
+                ),
             )
         )
     return found
@@ -119,17 +126,20 @@ def _unit_errors(scores: Mapping[tuple[str, int], Row], condition: str) -> tuple
 
 
 def _over_units(
-    scores: Mapping[tuple[str, int], Row], condition: str
+    scores: Mapping[tuple[str, int], Row], condition: str, luck: float = 1.0
 ) -> tuple[tuple[float, ...], Score] | None:
     """Return the errors of all units under a condition, and the score with their geometric mean.
 
-    Of the standard unit are what is no error, and the errors over cones, in proportion. None where
-    the standard unit was not measured.
+    Of the standard unit are what is no error, and the errors over cones, in proportion. Where it is
+    the only unit its error is taken times `luck`. None where it was not measured.
     """
     standard = scores.get((condition, 0))
     if standard is None:
         return None
     units = _unit_errors(scores, condition)
+    if len(units) == 1:
+        found = _score(standard, luck)
+        return units, dataclasses.replace(found, rms_deg=store(luck * units[0]))
     mean_deg = UnitErrors(units).own_error_deg
     return units, dataclasses.replace(_score(standard, _share(units, standard)), rms_deg=mean_deg)
 
@@ -153,12 +163,30 @@ def _under(scores: Mapping[tuple[str, int], Row], condition: str, share: float) 
     return _score(scores[condition, 0], share)
 
 
-def _spreads(by: Mapping[Place, Mapping[tuple[str, int], Row]]) -> dict[str, float]:
-    """Return by data set how far log errors of units scatter: the median over its pipelines."""
+def _luck(by: Mapping[Place, Mapping[tuple[str, int], Row]]) -> dict[str, float]:
+    """Return by data set the errors of units in flight over those of the standard one.
+
+    A launch is the same for all pipelines of a unit: where one unit alone was flown, this takes its
+    luck away. The median over the pipelines of which several were.
+    """
     found: dict[str, list[float]] = {}
     for (dataset, _, _), scores in by.items():
-        first = datasets.get(dataset).conditions[0] if dataset in datasets.names() else ""
-        units = _unit_errors(scores, first)
+        units = _unit_errors(scores, FLIGHT)
+        if len(units) >= FEWEST_UNITS:
+            found.setdefault(dataset, []).append(_share(units, scores[FLIGHT, 0]))
+    return {dataset: statistics.median(shares) for dataset, shares in found.items()}
+
+
+def _spreads(
+    by: Mapping[Place, Mapping[tuple[str, int], Row]], conditions: Mapping[str, str]
+) -> dict[str, float]:
+    """Return by data set how far log errors of units scatter: the median over its pipelines.
+
+    Under one of its conditions each.
+    """
+    found: dict[str, list[float]] = {}
+    for (dataset, _, _), scores in by.items():
+        units = _unit_errors(scores, conditions.get(dataset, ""))
         if len(units) >= FEWEST_UNITS:
             found.setdefault(dataset, []).append(statistics.stdev(map(math.log, units)))
     return {dataset: statistics.median(spreads) for dataset, spreads in found.items()}

@@ -58,15 +58,27 @@ def test_the_fine_wide_camera_is_that_of_two_studies(published: Measurements) ->
 
 def test_coarse_sensors_are_photodiodes_quadrants_and_cells(published: Measurements) -> None:
     found = places(recommend({"accuracy": "CSS"}, published))
-    assert {detector for detector, _ in found[:3]} == {"PD", "QPD", "PVA"}
+    assert {detector for detector, _ in found[:4]} == {"PD", "PSD", "QPD", "PVA"}
     assert not any(detector == "CCD" for detector, _ in found)
 
 
 def test_the_full_sphere_is_led_by_what_was_built_for_it(published: Measurements) -> None:
-    answer = recommend({"min_fov_deg": 360, "max_error_deg": 1.0}, published)
-    first = answer.architectures[0]
+    ask = {"min_fov_deg": 360, "max_error_deg": 1.0}
+    first = recommend({**ask, "level": "own"}, published).architectures[0]
     assert first.place.architecture == ("PVA", "Maskless")
     assert first.place.is_built
+    # under the Earth's light only methods that know of it are left, on flights
+    flown = recommend(ask, published).architectures
+    assert {one.place.architecture for one in flown} == {("PVA", "Maskless"), ("PD", "Maskless")}
+    assert all(one.best.pipeline.dataset in {"pva-orbit", "pd-orbit"} for one in flown)
+
+
+def test_a_flight_is_no_better_than_the_sensor_on_the_ground(published: Measurements) -> None:
+    rows = [row for row in published.rows if row.flight and len(row.flight_units_deg) == 10]
+    assert len(rows) > 150
+    ratios = [row.flight.rms_deg / row.nominal.rms_deg for row in rows if row.flight.rms_deg]
+    assert min(ratios) > 0.99
+    assert np.median(ratios) > 3.0
 
 
 def test_power_is_of_three_products_or_unknown_and_self_powered_is_said(
@@ -86,7 +98,7 @@ def test_power_is_of_three_products_or_unknown_and_self_powered_is_said(
 def test_a_latency_is_judged_by_published_times_and_the_readers_processor(
     published: Measurements,
 ) -> None:
-    asked = {"max_error_deg": 0.5, "max_latency_us": 100.0}
+    asked = {"max_error_deg": 0.5, "max_latency_us": 100.0, "level": "own"}
     here = recommend(asked, published)
     assert len(measured(here)) > 1
     assert all(

@@ -256,7 +256,7 @@ def test_a_study_runs_by_the_methods_that_it_is_mapped_to(
     ("key", "grade", "part", "says"),
     [
         ("Xie2011", "assumed", "sensor", "of its sensor are not known"),
-        ("Xie2012", "assumed", "sensor", "of its sensor are not known"),
+        ("Xie2012", "close", "score", "4.2 times the reported"),
         ("deBoer2013", "assumed", "sensor", "of its sensor are not known"),
         ("ONeill2020", "assumed", "calibration", "is not known"),
         ("Lu2017a", "assumed", "calibration", "is not known"),
