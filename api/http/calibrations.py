@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Path, Request, Response
 from fastapi.responses import JSONResponse
 
-from api.schema.calibrations import CalibrationFields
+from api.schema.calibrations import CalibrationFields, Place
 from api.service import calibrations as service
 from api.web.answers import StrictRoute
 from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, as_response, sent, while_there
@@ -122,3 +122,20 @@ async def preview(request: Request) -> Response:
     service.read(given, files)
     found = await while_there(request, service.previewed(files))
     return JSONResponse(found, headers={"Cache-Control": "no-store"})
+
+
+@router.get(
+    "/calibrations/waiting/{ticket}",
+    summary="Place of a calibration in the queue",
+    response_model=Place,
+    responses={"4XX": {"description": "Refused; it is said why.", "content": _PROBLEM}},
+)
+async def waiting(
+    ticket: Annotated[str, Path(description="As the form has it.")],
+    request: Request,
+    response: Response,
+) -> Place:
+    """Say how many calibrations come before one that was sent with this ticket. Never cached."""
+    media_type(request.headers.get("accept"), (JSON,))
+    response.headers["Cache-Control"] = "no-store"
+    return service.place(ticket)

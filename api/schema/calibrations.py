@@ -1,4 +1,4 @@
-"""The fields of a form that asks for a calibration, beside its files."""
+"""The form that asks for a calibration, beside its files; the place of one in the queue."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from api.schema.base import Question
+from api.schema.base import Question, Shape
 from api.schema.parameters import GIVEN
+
+#: A word that no other client makes up.
+TICKET = "[0-9a-f]{16,64}"
 
 
 class CalibrationFields(Question):
@@ -26,3 +29,19 @@ class CalibrationFields(Question):
     answer: Annotated[Literal["json", "report", "zip"] | None, GIVEN] = Field(
         None, description="Before `Accept`: calibration, report, or all files."
     )
+    ticket: str = Field(
+        "",
+        pattern=f"^({TICKET})?$",
+        description="16 to 64 random digits 0-9a-f: `/v1/calibrations/waiting/TICKET` tells "
+        "the place in the queue.",
+    )
+
+
+class Place(Shape):
+    """The place of a calibration in the queue."""
+
+    before: int | None = Field(
+        description="Calibrations that come first, 0 while it runs; null where none of this ticket "
+        "waits or runs."
+    )
+    wait_s: int | None = Field(description="About how long until it runs.")

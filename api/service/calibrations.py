@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import io
+import itertools
+import os
+import re
+import tempfile
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar
 
-from api.schema.calibrations import CalibrationFields
+from api.schema.calibrations import TICKET, CalibrationFields, Place
 from api.service.asking import reading, refusing
 from api.service.problems import Problem, Violation
 from calibrate.uploaded import (
@@ -20,9 +27,45 @@ from calibrate.uploaded import (
     preview_uploads,
 )
 
+#: Names a directory that all processes of a server share: a note there for each that waits.
+SHARED = "SUNATLAS_SHARED"
 #: Calibrations that wait at most in a process of the server, and seconds that each usually takes.
 MOST_WAITING, _USUAL_S = 8, 10
 _Answer = TypeVar("_Answer")
+
+
+@cache
+def _own_notes() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory()
+
+
+def _notes() -> Path:
+    return Path(os.environ.get(SHARED) or _own_notes().name)
+
+
+_numbers = itertools.count()
+
+
+@contextmanager
+def _noted(ticket: str) -> Iterator[None]:
+    """Keep a note of a calibration, after those of this process that came before it."""
+    note = _notes() / f"{os.getpid()}-{next(_numbers):012}-{ticket}"
+    note.touch()
+    try:
+        yield
+    finally:
+        note.unlink(missing_ok=True)
+
+
+def place(ticket: str) -> Place:
+    """Return how many calibrations come before that of a ticket, in any process of the server."""
+    known = _notes().glob(f"*-{ticket}") if re.fullmatch(TICKET, ticket) else iter(())
+    note = next(known, None)
+    if note is None:
+        return Place(before=None, wait_s=None)
+    of_process = _notes().glob(f"{note.name.partition('-')[0]}-*")
+    before = sum(other.name < note.name for other in of_process)
+    return Place(before=before, wait_s=_USUAL_S * before)
 
 
 class _Queue:
@@ -86,16 +129,17 @@ async def calibrated(fields: CalibrationFields, files: Sequence[Upload]) -> Mapp
     Problem
         422 where the files settle no calibration, 503 where too many others wait.
     """
-    return await _CALIBRATIONS.answer(
-        lambda caller: calibrate_uploads(
-            files,
-            fields.config,
-            apply=fields.apply == "true",
-            model=fields.model.strip(),
-            require=fields.require.strip(),
-            caller=caller,
+    with _noted(fields.ticket):
+        return await _CALIBRATIONS.answer(
+            lambda caller: calibrate_uploads(
+                files,
+                fields.config,
+                apply=fields.apply == "true",
+                model=fields.model.strip(),
+                require=fields.require.strip(),
+                caller=caller,
+            )
         )
-    )
 
 
 async def previewed(files: Sequence[Upload]) -> dict[str, Any]:

@@ -132,9 +132,10 @@ def _expected(schema: Schema) -> str:
             above = "above" if "exclusiveMinimum" in schema else "of at least"
             least = schema.get("exclusiveMinimum", schema.get("minimum"))
             return f"a number {above} {least}, at most {schema['maximum']:g}"
-    if not schema["maxLength"]:
+    if not schema.get("maxLength", 1):
         return "nothing: there is no valid value"
-    return f"text of {schema['minLength']} to {schema['maxLength']} characters"
+    form = schema.get("pattern")
+    return "text of " + (form or f"{schema['minLength']} to {schema['maxLength']} characters")
 
 
 def _show(value: object) -> str:

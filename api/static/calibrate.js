@@ -130,12 +130,22 @@ async function calibrate(event) {
   const sent = new FormData(form, event.submitter);
   const buttons = form.querySelectorAll("button");
   const started = Date.now();
-  const tick = () => { byId("progress").textContent = `Calibrating, ${Math.round((Date.now() - started) / 1000)} s …`; };
+  const digits = [...crypto.getRandomValues(new Uint8Array(16))].map((n) => n.toString(16).padStart(2, "0"));
+  const ticket = digits.join("");
+  sent.set("ticket", ticket);
+  let said = "";
+  const tick = () => { byId("progress").textContent = `Calibrating, ${Math.round((Date.now() - started) / 1000)} s …${said}`; };
+  /** Ask how many calibrations come before this one, which waits for its turn. */
+  const ask = async () => {
+    const place = await (await fetch(`/v1/calibrations/waiting/${ticket}`)).json();
+    said = place.before > 0 ? ` ${place.before} in front, about ${place.wait_s} s` : "";
+  };
   for (const button of buttons) button.disabled = true;
   complain();
   byId("result").replaceChildren();
   tick();
   const clock = setInterval(tick, 1000);
+  const asked = setInterval(() => ask().catch(() => {}), 3000);
   try {
     const answer = await fetch("/calibrate", { method: "POST", body: sent, headers: { Accept: "text/html" } });
     const page = new DOMParser().parseFromString(await answer.text(), "text/html");
@@ -145,6 +155,7 @@ async function calibrate(event) {
     complain("The server does not answer.");
   }
   clearInterval(clock);
+  clearInterval(asked);
   byId("progress").textContent = "";
   for (const button of buttons) button.disabled = false;
 }

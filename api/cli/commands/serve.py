@@ -8,7 +8,6 @@ import gc
 import os
 import socket
 import sys
-import tempfile
 from typing import Annotated, Any
 
 import typer
@@ -17,7 +16,9 @@ from uvicorn.config import LOGGING_CONFIG
 from uvicorn.supervisors import Multiprocess
 
 from api.server import serving
+from api.service import calibrations
 from benchmark.processes import take_time_to_end
+from files.atomic import sweep, temporary_directory
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -67,10 +68,11 @@ def serve(
         sys.stdout.flush()  # who reads a pipe waits for the address
         # Python walks all that was loaded before it ends, for a second or two, unless it is frozen.
         stack.callback(gc.freeze)
+        sweep()
+        shared = str(stack.enter_context(temporary_directory()))
+        os.environ[calibrations.SHARED] = shared
         if workers > 1:
-            os.environ["PROMETHEUS_MULTIPROC_DIR"] = stack.enter_context(
-                tempfile.TemporaryDirectory(prefix="sunatlas-metrics-")
-            )
+            os.environ["PROMETHEUS_MULTIPROC_DIR"] = shared
             take_time_to_end(_WORKERS_END_S)
             _serve_by_many(listener, workers, access_log=access_log)
             return

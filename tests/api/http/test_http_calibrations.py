@@ -136,6 +136,7 @@ def test_a_model_is_filled_in_by_the_address_and_none_but_those_there_are_is_tri
         ({"json": {}}, 415, "multipart/form-data"),
         ({"files": {"file": ("b.csv", BAD)}, "data": {"aply": "true"}}, 400, "apply"),
         ({"files": {"config": (None, "")}}, 422, "a file"),
+        ({"files": {"file": ("b.csv", BAD)}, "data": {"ticket": "*"}}, 422, "[0-9a-f]{16,64}"),
         ({"files": {"file": ("b.csv", b"x" * 10_200_000)}}, 413, "at most"),
         (
             {

@@ -1,5 +1,7 @@
 """Who hangs up gives the place in the queue of calibrations away; others wait for theirs."""
 
+import contextlib
+import json
 import logging
 import os
 import socket
@@ -68,6 +70,39 @@ def test_who_hangs_up_gives_the_turn_to_the_next(atlas, serve, work):
         waiting(0)
         assert not work.acquire(blocking=False)
         assert left(connection) == before + 3
+
+
+def test_who_waits_is_told_by_any_worker_how_many_come_first(
+    atlas, serve, work, tmp_path, monkeypatch
+):
+    """Another process of the server has a queue of its own, which is not counted."""
+    monkeypatch.setenv(calibrations.SHARED, str(tmp_path))
+    for name in ("1-000000000000-", "1-000000000001-" + 16 * "9", "1-000000000002-"):
+        (tmp_path / name).touch()
+
+    def told(ticket):
+        connection.request("GET", f"/v1/calibrations/waiting/{ticket:016}")
+        answer = connection.getresponse()
+        assert answer.headers["Cache-Control"] == "no-store"
+        return json.loads(answer.read())
+
+    with serve(atlas.app) as connection, contextlib.ExitStack() as plugs:
+        for number in range(3):
+            field = b'--a\r\nContent-Disposition: form-data; name="ticket"\r\n\r\n'
+            body = field + b"%016d\r\n" % number + BODY
+            place = (connection.host, connection.port)
+            plug = plugs.enter_context(socket.create_connection(place))
+            plug.sendall(HEAD.replace(b"%d" % len(BODY), b"%d" % len(body)) + body)
+            waiting(number + 1)
+        assert [told(n) for n in range(3)] == [{"before": n, "wait_s": 10 * n} for n in range(3)]
+        assert told(9999999999999999) == {"before": 1, "wait_s": 10}
+        plug.close()
+        waiting(2)
+        assert told(2) == {"before": None, "wait_s": None}
+        connection.request("GET", "/v1/calibrations/waiting/*")
+        assert json.loads(connection.getresponse().read()) == {"before": None, "wait_s": None}
+    waiting(0)
+    assert len(list(tmp_path.iterdir())) == 3, "notes of calibrations that are over are gone"
 
 
 @pytest.mark.parametrize("path", [b"/v1/calibrations", b"/v1/calibrations/preview", b"/calibrate"])
