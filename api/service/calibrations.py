@@ -98,6 +98,7 @@ class _Queue:
         finally:
             caller.hang_up()
             self.length -= 1
+            del turn, work  # what it raises would hold itself by this, and the files
 
 
 _CALIBRATIONS, _PREVIEWS = _Queue(), _Queue()

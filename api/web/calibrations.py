@@ -59,6 +59,7 @@ async def while_there(request: Request, work: Coroutine[Any, Any, _Answer]) -> _
     finally:
         answered.cancel()
         left.cancel()
+        del answered, work  # what it raises would hold itself by this, and the files
 
 
 def as_response(made: Mapping[str, str], wanted: str) -> Response:

@@ -1,6 +1,7 @@
 """Who hangs up gives the place in the queue of calibrations away; others wait for theirs."""
 
 import contextlib
+import gc
 import json
 import logging
 import os
@@ -9,6 +10,7 @@ import struct
 import tempfile
 import threading
 import time
+import weakref
 
 import pytest
 
@@ -129,3 +131,22 @@ def test_a_hundred_uploads_that_are_cut_leave_no_line_no_file_and_no_place_taken
         waiting(0)
     assert caplog.records == []
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("path", ["/v1/calibrations", "/v1/calibrations/preview", "/calibrate"])
+def test_files_that_are_refused_are_let_go_at_once(atlas, path, monkeypatch):
+    """Held by a cycle, nine of 10 MB waited for a walk of the collector, which comes seldom."""
+    sent = []
+
+    def refuse(files, *_, **__):
+        sent.extend(map(weakref.ref, files))
+        raise UploadRefusedError("no")
+
+    monkeypatch.setattr(calibrations, "calibrate_uploads", refuse)
+    monkeypatch.setattr(calibrations, "preview_uploads", refuse)
+    gc.disable()
+    try:
+        assert atlas.post(path, files={"file": ("b.csv", b"1")}).status_code == 422
+        assert [one() for one in sent] == [None]
+    finally:
+        gc.enable()
