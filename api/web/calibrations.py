@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine, Mapping
+from collections.abc import Coroutine, Mapping, Sequence
 from typing import Any, TypeVar
 
 from fastapi import Request, Response
@@ -19,6 +19,8 @@ OFFERED = (JSON, HTML, ZIP)
 #: What the field `answer` calls them.
 ANSWERS: Mapping[str | None, str] = {"json": JSON, "report": HTML, "zip": ZIP}
 _Answer = TypeVar("_Answer")
+#: Seconds after which a form looks again whether files of another are read.
+_TURN_S = 0.05
 
 
 async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
@@ -31,13 +33,33 @@ async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
     """
     form = await request.form()
     try:
-        require_place()  # files are on disk up to here, and in memory from here on
         fields = {name: part for name, part in form.multi_items() if isinstance(part, str)}
         parts = [part for _, part in form.multi_items() if isinstance(part, UploadFile)]
-        files = [Upload(part.filename or "", await part.read()) for part in parts]
+        files = await _in_memory(parts)
     finally:
         await form.close()
     return fields, tuple(file for file in files if file.name or file.data)
+
+
+_reading = False
+
+
+async def _in_memory(parts: Sequence[UploadFile]) -> list[Upload]:
+    """Read files, which are on disk up to here: of one form at a time, as long as there is a place.
+
+    Hundreds that arrive at once would all be read before the first of them takes a place.
+    """
+    global _reading  # noqa: PLW0603 - of the process
+    while True:
+        require_place()
+        if not _reading:
+            break
+        await asyncio.sleep(_TURN_S)
+    _reading = True
+    try:
+        return [Upload(part.filename or "", await part.read()) for part in parts]
+    finally:
+        _reading = False
 
 
 async def while_there(request: Request, work: Coroutine[Any, Any, _Answer]) -> _Answer:

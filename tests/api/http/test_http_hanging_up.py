@@ -1,10 +1,12 @@
 """Who hangs up gives the place in the queue of calibrations away; others wait for theirs."""
 
+import asyncio
 import contextlib
 import gc
 import json
 import logging
 import os
+import select
 import socket
 import struct
 import tempfile
@@ -13,6 +15,7 @@ import time
 import weakref
 
 import pytest
+from starlette.datastructures import UploadFile
 
 from api.service import calibrations
 from calibrate.uploaded import UploadRefusedError
@@ -150,3 +153,31 @@ def test_files_that_are_refused_are_let_go_at_once(atlas, path, monkeypatch):
         assert [one() for one in sent] == [None]
     finally:
         gc.enable()
+
+
+def test_files_of_many_forms_are_not_in_memory_at_once(atlas, serve, work, monkeypatch):
+    """400 of 9.9 MB that ended together took a process to 3 GB before 391 heard 503."""
+    monkeypatch.setattr(calibrations, "MOST_WAITING", 2)
+    read, held = UploadFile.read, []
+
+    async def slowly(part, *size):
+        held.append(part)
+        await asyncio.sleep(0.02)
+        return await read(part, *size)
+
+    monkeypatch.setattr(UploadFile, "read", slowly)
+    with serve(atlas.app) as connection, contextlib.ExitStack() as plugs:
+        place = (connection.host, connection.port)
+        opened = [plugs.enter_context(socket.create_connection(place)) for _ in range(30)]
+        for plug in opened:
+            plug.sendall(HEAD + BODY[:-1])
+        for plug in opened:
+            plug.sendall(BODY[-1:])
+        refused = 0
+        while refused < 27:
+            for plug in select.select(opened, (), (), 60)[0]:
+                assert plug.recv(65536).startswith(b"HTTP/1.1 503 ")
+                opened.remove(plug)
+                refused += 1
+        assert len(held) == 3
+    waiting(0)
