@@ -107,7 +107,9 @@ class ComparedRow(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used it on such a sensor.")
-    own_error_deg: float | None = Field(description="Own error; of unit 0 under later conditions.")
+    own_error_deg: float | None = Field(
+        description="Own error; RMS over the units measured elsewhere."
+    )
     ratio_to_smallest: float | None = Field(description="Own error over the lowest compared.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")

@@ -75,7 +75,9 @@ class Verification(Shape):
 class PublishedScore(Shape):
     """Published numbers of a pipeline on a data set under a condition."""
 
-    own_error_deg: float | None = Field(description="Own error; of unit 0 under later conditions.")
+    own_error_deg: float | None = Field(
+        description="Own error; RMS over the units measured elsewhere."
+    )
     rms_deg: float | None = Field(description="Unit 0 RMS, over answers to observable samples.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
@@ -204,7 +206,7 @@ class Rung(Shape):
 
     extractor: str
     model: str
-    own_error_deg: float = Field(description="Own error, or RMS of unit 0: see `nominal`.")
+    own_error_deg: float = Field(description="Own error, or RMS over units: see `nominal`.")
     availability: float | None
 
 

@@ -173,7 +173,7 @@ def _rungs(ladder: Mapping[str, Any] | None) -> Iterator[str]:
     if ladder is None:
         yield "Its own method here, the best method and the bound: not known"
         return
-    label = OWN if ladder["nominal"] else "unit 0 RMS"
+    label = OWN if ladder["nominal"] else "RMS over units"
     yield f"Here, on {ladder['dataset']}, {ladder['condition']}:"
     for name, rung in (("its own method", ladder["own"]), ("best method", ladder["best"])):
         yield (
@@ -203,6 +203,6 @@ def _measure(pipeline: Mapping[str, Any]) -> list[str]:
 
 def _error(score: Mapping[str, Any]) -> str:
     if score["own_error_deg"] is not None:
-        alone = "" if score["condition"] == NOMINAL else " (unit 0 RMS)"
+        alone = "" if score["condition"] == NOMINAL else " (RMS over units)"
         return f"{digits(score['own_error_deg'])} deg{alone}"
     return "not measured yet" if score["status"] is None else "without an error"

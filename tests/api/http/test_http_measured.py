@@ -210,6 +210,7 @@ def test_recommendations_carry_what_is_measured(measured):
         "model": "spm",
         "condition": "nominal",
         "field_deg": 120.0,
+        **dict.fromkeys(("flight_error_deg", "flight_low_deg", "flight_high_deg")),  # not flown
         "own_error_deg": pytest.approx(OWN, rel=1e-4),
         "own_deg": pytest.approx(OWN, rel=1e-4),  # its name until 0.3
         "own_low_deg": pytest.approx(OWN / spread, rel=1e-3),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from html import unescape
 
+import pytest
+
 from api.pages.numbers import count_text, degrees, number, percent, times
 from api.pages.terms import display_text, explain_terms
 from tests.api.conftest import Client
@@ -85,15 +87,21 @@ def test_the_answers_twins_are_the_documents_of_the_service(atlas: Client) -> No
     assert atlas.get("/answer.json?detector=CMOSS").status_code == 422
 
 
-def test_the_scatter_has_a_point_for_every_own_error_and_no_other(atlas: Client) -> None:
-    """With a bench, too: own errors alone are drawn."""
-    for asked in ("sort=evidence", "max_error_deg=0.5&bench_deg=0.05"):
+@pytest.mark.parametrize(
+    ("level", "member", "words"),
+    [("flight", "flight_error_deg", "error in flight"), ("own", "own_error_deg", "own error")],
+)
+def test_the_scatter_has_a_point_for_every_judged_error_and_no_other(
+    atlas: Client, level: str, member: str, words: str
+) -> None:
+    """With a bench, too: errors without one are drawn."""
+    for asked in (f"level={level}", f"level={level}&max_error_deg=0.5&bench_deg=0.05"):
         document = atlas.get(f"/v1/recommendations?{asked}&limit=500").json()["architectures"]
         page = atlas.get(f"/?{asked}").text
         drawn = re.findall(r'<circle class="dot (\w+)', page)
         every = [a["best"]["measured"] for a in document if a["best"] and a["best"]["measured"]]
-        places = {(m["field_deg"], m["own_error_deg"]) for m in every if m["own_error_deg"]}
-        assert len(drawn) == sum(bool(m["own_error_deg"]) for m in every) > 5
+        places = {(m["field_deg"], m[member]) for m in every if m[member]}
+        assert len(drawn) == sum(bool(m[member]) for m in every) > 5
         # The front: none errs less over a field as wide.
         front = [
             (field, error)
@@ -101,10 +109,8 @@ def test_the_scatter_has_a_point_for_every_own_error_and_no_other(atlas: Client)
             if not any(f >= field and e <= error and (f, e) != (field, error) for f, e in places)
         ]
         assert drawn.count("pareto") == len(front)
-        titles = re.findall(r"own error (\S+°)", "".join(re.findall("<title>(.*?)</title>", page)))
-        assert sorted(titles) == sorted(
-            degrees(m["own_error_deg"]) for m in every if m["own_error_deg"]
-        )
+        titles = re.findall(rf"{words} (\S+°)", "".join(re.findall("<title>(.*?)</title>", page)))
+        assert sorted(titles) == sorted(degrees(m[member]) for m in every if m[member])
 
 
 def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
