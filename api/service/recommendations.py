@@ -343,7 +343,9 @@ def _measured(answer: Answer, one: found_by.Calibration) -> Measured | None:
         model=pipeline.model,
         condition=judged.condition,
         field_deg=judged.field_deg,
-        flight_error_deg=None if least is None or not one.flight else _digits(one.flight.error_deg),
+        flight_error_deg=None
+        if least is None or not one.flight
+        else _digits(one.flight.error_deg, 5),
         flight_low_deg=_digits(least),
         flight_high_deg=_digits(most),
         own_error_deg=None if low is None else _digits(own.error_deg, 5),
