@@ -16,7 +16,7 @@ from registry.judging import MEETS, MISSES, PARTS, Question, States
 from registry.ranking import ALIKE, Sort, TaskMeasure, in_words, joint_order, task_measure
 from registry.relaxation import Explanation, explain
 from registry.reports import Report
-from registry.requirements import OF_STUDIES
+from registry.requirements import OF_STUDIES, Level
 from survey_data.processors import factor
 
 STATE_NAMES = {MEETS: "meets", 0: "unknown", MISSES: "misses"}
@@ -111,6 +111,11 @@ class Answer:
     def is_asked(self) -> bool:
         """Whether anything is required."""
         return bool(self.question.requirements.names)
+
+    @property
+    def level(self) -> Level:
+        """Level of error that is judged: own where nothing was flown, whatever was asked for."""
+        return "own" if self.question.table is self.on_the_ground.table else "flight"
 
     @property
     def order(self) -> str:

@@ -134,7 +134,7 @@ def document(
     }
     return Recommendations(
         requirements=answer.question.requirements.to_dict(),
-        level=answer.question.requirements.judged_level,
+        level=answer.level,
         sort=answer.sort,
         order=answer.order,
         count=len(answer.architectures),
@@ -266,8 +266,7 @@ def _cards(answer: Answer) -> Iterator[Card]:
         if among:
             best = min(among, key=lambda one: one.shown_deg)
             built = "" if best.place.is_built else "; built by nobody we know of"
-            level = answer.question.requirements.judged_level
-            kind = "error in flight" if level == "flight" else "own error"
+            kind = "error in flight" if answer.level == "flight" else "own error"
             yield _card(title, best, f"{kind} {best.shown_deg:.3g} deg, simulated{built}")
 
 

@@ -179,6 +179,8 @@ def test_a_record_without_flights_is_judged_by_own_errors(facts_of: FactsOf) -> 
     assert found is not None
     assert found.best is not None
     assert found.best.flight is None
+    answer = recommend({"max_error_deg": 0.2}, [row(rms_deg=0.1)], facts=facts_of([study()]))  # type: ignore[list-item]
+    assert answer.level == "own", "what is judged, not what is asked for"
 
 
 def test_failed_runs_and_numbers_that_are_none_do_not_count() -> None:

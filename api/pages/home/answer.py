@@ -147,12 +147,11 @@ def _own(known: Knowledge, measured: Measured) -> Markup:
 def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
     """Return the judged errors of the best calibrations of all architectures of an answer."""
     words, more = ACROSS.get(across, ACROSS["field"])
-    level = found.question.requirements.judged_level
     points: list[Point] = []
     left_out: list[str] = []
     for one in (service.architecture(found, one) for one in found.architectures):
         measured = None if one.best is None else one.best.measured
-        if measured is None or not (error := _judged_deg(measured, level)):
+        if measured is None or not (error := _judged_deg(measured, found.level)):
             continue
         value = measured.field_deg
         if not more:
@@ -162,7 +161,7 @@ def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
             points.append(_point(one, measured, value, error))
         else:
             left_out.append(f"{one.detector} + {one.mask}")
-    up = "error in flight" if level == "flight" else "own error"
+    up = "error in flight" if found.level == "flight" else "own error"
     return Scatter(points, up, words, more, "°" if more else "poses", left_out)
 
 
