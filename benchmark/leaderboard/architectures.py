@@ -8,12 +8,11 @@ is partly the luckiest. A runner-up that the paired test of the board does not t
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from statistics import median
 from typing import Any
 
 from benchmark.contract import FLIGHT
 from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_answer
-from benchmark.metrics.ranking import UnitErrors
+from benchmark.metrics.ranking import UnitErrors, luck_of_standard
 from benchmark.metrics.score import is_available
 from benchmark.metrics.separation import store
 
@@ -107,11 +106,7 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _in_flight(best: Row, datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the error in flight of the best pipeline; of a data set in orbit its own.
-
-    A launch is the same for all pipelines of a unit: an error of the standard unit alone is taken
-    times what units have of it, the median over pipelines that several were flown with.
-    """
+    """Return the error in flight of the best pipeline; of a data set in orbit its own."""
     rows: list[Row] = []
     for dataset in datasets:
         if dataset["name"] == best.get("dataset"):
@@ -119,14 +114,10 @@ def _in_flight(best: Row, datasets: Sequence[Mapping[str, Any]]) -> dict[str, An
             rows = [row for row in dataset["rows"] if row["condition"] == condition]
     names = best.get("extractor"), best.get("model")
     flown: Row = next((row for row in rows if (row["extractor"], row["model"]) == names), {})
-    shares = [
-        row["own_error_deg"] / row["unit_rms_deg"][0]
-        for row in rows
-        if len(row["unit_rms_deg"]) > 1 and row["unit_rms_deg"][0]
-    ]
     error = flown.get("own_error_deg")
-    if error and shares and len(flown["unit_rms_deg"]) == 1:
-        error = store(error * median(shares))
+    if error and len(flown["unit_rms_deg"]) == 1:
+        luck = luck_of_standard(UnitErrors(tuple(row["unit_rms_deg"])) for row in rows)
+        error = store(error * luck)
     return {
         "flight_error_deg": error,
         "flight_low_deg": flown.get("low_deg"),

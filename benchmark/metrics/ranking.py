@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,20 @@ from benchmark.metrics.separation import store
 Row = Mapping[str, Any]
 
 _LEAST_DEG = 1e-12
+
+
+def luck_of_standard(errors: Iterable[UnitErrors]) -> float:
+    """Return what units err over what the standard one does: the median over pipelines.
+
+    A launch, or an age, is the same for all pipelines of a unit. An error of the standard unit
+    alone, times this, compares with errors of several. 1 where of no pipeline several have one.
+    """
+    shares = [
+        math.exp(math.fsum(map(math.log, one.known_deg)) / len(one.known_deg)) / one.known_deg[0]
+        for one in errors
+        if one.complete and min(one.known_deg) > 0
+    ]
+    return median(shares) if shares else 1.0
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from benchmark import datasets
 from benchmark.contract import FLIGHT
 from benchmark.datasets.hazards import hazards
 from benchmark.datasets.pins import Pin
-from benchmark.metrics.ranking import UnitErrors
+from benchmark.metrics.ranking import UnitErrors, luck_of_standard
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import is_available
 from benchmark.metrics.separation import store
@@ -164,17 +164,11 @@ def _under(scores: Mapping[tuple[str, int], Row], condition: str, share: float) 
 
 
 def _luck(by: Mapping[Place, Mapping[tuple[str, int], Row]]) -> dict[str, float]:
-    """Return by data set the errors of units in flight over those of the standard one.
-
-    A launch is the same for all pipelines of a unit: where one unit alone was flown, this takes its
-    luck away. The median over the pipelines of which several were.
-    """
-    found: dict[str, list[float]] = {}
+    """Return by data set what takes the luck of the standard unit away where it alone was flown."""
+    found: dict[str, list[UnitErrors]] = {}
     for (dataset, _, _), scores in by.items():
-        units = _unit_errors(scores, FLIGHT)
-        if len(units) >= FEWEST_UNITS:
-            found.setdefault(dataset, []).append(_share(units, scores[FLIGHT, 0]))
-    return {dataset: statistics.median(shares) for dataset, shares in found.items()}
+        found.setdefault(dataset, []).append(UnitErrors(_unit_errors(scores, FLIGHT)))
+    return {dataset: luck_of_standard(errors) for dataset, errors in found.items()}
 
 
 def _spreads(
