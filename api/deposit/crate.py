@@ -49,6 +49,7 @@ _KINDS = {
     "checksums-sha256.txt": "Checksums.",
     "preview.png": "Picture of samples of a data set.",
     "references.npz": "Flat and dark readings.",
+    "references-test.npz": "Flat and dark readings taken again after the calibration.",
     "rescore.py": "Installs the code and measures scores again from the samples.",
     "parquet": "The table as Parquet.",
     "croissant": "As programs for machine learning load it (Croissant).",

@@ -2,7 +2,8 @@
 
 An export is a directory: ``card.json``, ``checksums-sha256.txt`` (which ``sha256sum --check``
 reads) and for each condition ``<condition>/preview.png``, ``<condition>/references.npz`` where a
-calibration has flat and dark readings, ``<condition>/<split>.npz`` and, where samples are a few
+calibration has flat and dark readings, ``<condition>/references-test.npz`` where they are taken
+again after it, ``<condition>/<split>.npz`` and, where samples are a few
 numbers each, the same as ``<condition>/<split>.csv``. It is a function of the
 dataset and of what was asked for: exporting twice gives the same bytes.
 """
@@ -161,13 +162,19 @@ def _write_split(
 
 
 def _write_references(made: Path, preset: Preset, condition: str) -> list[dict[str, Any]]:
-    readings = preset.references(condition)
-    if not readings:
-        return []
-    path = f"{condition}/references.npz"
-    write_archive(made / path, readings)
-    shapes = {name: _describe(array) for name, array in readings.items()}
-    return [{"path": path, "kind": "references", "condition": condition, "arrays": shapes}]
+    setup, files = preset.condition(condition), []
+    taken = {"references.npz": "calibration"}
+    if setup.renewed or setup.mission is not None:
+        taken["references-test.npz"] = "test"
+    for name, split in taken.items():
+        readings = preset.references(condition, split)
+        if not readings:
+            continue
+        path = f"{condition}/{name}"
+        write_archive(made / path, readings)
+        shapes = {name: _describe(array) for name, array in readings.items()}
+        files.append({"path": path, "kind": "references", "condition": condition, "arrays": shapes})
+    return files
 
 
 def _bounds(bound: Bound) -> dict[str, NDArray[Any]]:

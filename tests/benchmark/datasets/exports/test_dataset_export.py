@@ -18,6 +18,7 @@ import pytest
 from benchmark import datasets
 from benchmark.datasets import Samples
 from benchmark.datasets import export as dataset_export
+from benchmark.datasets.corrected import corrections
 from benchmark.datasets.export import CARD, ExportError, export
 from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
 from benchmark.datasets.export_verification import verify
@@ -88,6 +89,23 @@ def test_flats_and_darks_are_those_of_the_data_set(made):
             assert set(arrays) == set(expected) <= set(made.card["arrays"])
             for name, array in expected.items():
                 np.testing.assert_array_equal(arrays[name], array)
+
+
+def test_readings_taken_again_are_exported_beside_those_of_the_calibration(tmp_path):
+    """Without them nobody corrects the samples of a flight as they are scored."""
+    made = exported("pd-slit", tmp_path / "out", conditions=["flight", "hot", "hot-renewed"])
+    preset = datasets.get("pd-slit")
+    found = {f["path"] for f in made.card["files"] if f["kind"] == "references"}
+    assert found == {
+        *("flight/references.npz", "flight/references-test.npz", "hot/references.npz"),
+        *("hot-renewed/references.npz", "hot-renewed/references-test.npz"),
+    }
+    for condition in ("flight", "hot-renewed"):
+        by = corrections(preset, condition)["test"]
+        again = read_archive(made.directory / condition / "references-test.npz")
+        np.testing.assert_array_equal(again["dark_ua"], by.dark)
+        np.testing.assert_array_equal(again["flat_ua"], by.flat)
+    assert verify(made.directory) == []
 
 
 def test_other_people_s_tools_check_the_sums(made):
