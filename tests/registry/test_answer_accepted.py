@@ -67,7 +67,7 @@ def test_the_full_sphere_is_led_by_what_was_built_for_it(published: Measurements
     first = recommend({**ask, "level": "own"}, published).architectures[0]
     assert first.place.architecture == ("PVA", "Maskless")
     assert first.place.is_built
-    # under the Earth's light only methods that know of it are left, on flights
+    # in flight the Earth is in view: only filters on the data sets in orbit allow for it
     flown = recommend(ask, published).architectures
     assert {one.place.architecture for one in flown} == {("PVA", "Maskless"), ("PD", "Maskless")}
     assert all(one.best.pipeline.dataset in {"pva-orbit", "pd-orbit"} for one in flown)

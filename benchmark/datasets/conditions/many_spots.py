@@ -55,7 +55,7 @@ def many_spots(
     Parameters
     ----------
     without
-        Conditions of pixel arrays that it does without, and without amends for.
+        Conditions of pixel arrays that it does without.
     more
         Conditions of its own, at the end.
     known, regime

@@ -1,7 +1,7 @@
-"""What has become of a sensor since it was calibrated: warm, cold or old, with or without amends.
+"""Conditions of a sensor that is warm, cold or old since its calibration: `since_calibration`.
 
-A sensor is calibrated new and at 25 deg C, its dark and flat readings taken there. Beside what it
-reads later stand two conditions with amends: the readings renewed, and all of the calibration.
+It is calibrated new and at 25 deg C; dark and flat readings are taken there, too. In two further
+conditions these readings, or the whole calibration, are taken again.
 """
 
 from __future__ import annotations
@@ -56,6 +56,6 @@ def since_calibration(
 
 
 def without(setups: dict[str, Condition], *names: str) -> dict[str, Condition]:
-    """Leave out conditions, each with those that make amends for it."""
+    """Leave out conditions, each with those of its renewed readings and calibration."""
     gone = {name + end for name in names for end in ("", RENEWED, RECALIBRATED)}
     return {name: setup for name, setup in setups.items() if name not in gone}

@@ -1,4 +1,4 @@
-"""Where two records differ is told by file and cell."""
+"""Differences of two records name the file and the cell."""
 
 from __future__ import annotations
 
