@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
+from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_answer
 from registry.answer import Answer, RankedArchitecture
 from registry.calibration import Calibration
 from registry.relaxation import in_words
@@ -24,9 +27,10 @@ def reason(answer: Answer, one: RankedArchitecture) -> str:
         said.append("not measured here")
     else:
         meets = "measured" in one.meets
-        said.append(
-            _measured_words(answer, one.best, meets=meets) + _lacks(answer, one, 1) * (not meets)
-        )
+        said.append(_measured_words(answer, one.best, meets=meets))
+        if not meets:
+            said[-1] += _lacks(answer, one, 1)
+            said += _finer_at_times(one)
     sentence = "; ".join(said)
     if not one.place.is_built:
         sentence = f"measured here, never built: {sentence}"
@@ -68,6 +72,28 @@ def _measured_words(answer: Answer, best: Calibration, *, meets: bool) -> str:
     if best.needs_bench_deg and (meets if asked.bench_deg is None else is_over):
         said += f", and needs a calibration bench of {best.needs_bench_deg:g} deg or better"
     return said
+
+
+def _finer_at_times(one: RankedArchitecture) -> list[str]:
+    """Return what errs far less than the best measured, but answers too seldom to be it."""
+    question = one.question
+    if one.best is None or one.best.judged is None:
+        return []
+    half = question.requirements.half_field_deg or 0.0
+    of_place = question.candidates & (question.table.row_place == one.number)
+    rows = [question.table.rows[at] for at in np.flatnonzero(of_place)]
+    partly = [
+        PartialAnswer(row.nominal.rms_deg or math.inf, row.nominal.availability or 0.0, row)
+        for row in rows
+        if not row.nominal.is_available and (row.half_fov_deg or 0.0) >= half
+    ]
+    finer = better_partial_answer(one.best.judged.error_deg, partly)
+    if finer is None:
+        return []
+    row = finer.subject
+    name, where = f"{row.extractor} + {row.model}", f"({row.dataset}, {row.nominal.condition})"
+    share = f"{finer.availability:.0%} of the readings"
+    return [f"{name} errs by {finer.error_deg:.3g} deg {where} but answers {share}"]
 
 
 def notes(answer: Answer) -> Iterator[str]:

@@ -74,6 +74,23 @@ def test_an_impossible_requirement_is_named_with_what_would_help(atlas):
         assert "an error of at most" in relaxation["words"]
 
 
+def test_where_the_measurement_misses_what_answers_too_seldom_is_named_with_its_share(atlas):
+    asked = "max_error_deg=0.05&min_fov_deg=120&detector=CMOS&mask=Multi-Ap."
+    (one,) = atlas.get(f"{PATH}?{asked}").json()["architectures"]
+    finer = one["reason"].rpartition("; ")[2]
+    pipeline, told = finer.split(" errs by ")
+    extractor, model = pipeline.split(" + ", 1)
+    rows = atlas.get("/v1/results?dataset=cmos-multi-aperture&condition=flight&limit=500").json()
+    share = {
+        row["availability"]
+        for row in rows["items"]
+        if (row["extractor"], row["model"]) == (extractor, model)
+    }
+    assert max(share) < 0.95
+    assert told.endswith(f"but answers {max(share):.0%} of the readings.")
+    assert float(told.split()[0]) < one["best"]["measured"]["own_error_deg"] / 3
+
+
 def test_the_table_has_every_calibration_of_every_architecture(atlas):
     asked = "task=FOV&include=calibrations&calibrations=500&limit=500"
     found = atlas.get(f"{PATH}?{asked}").json()
