@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from calibrate import uploaded
 from calibrate.uploaded import Caller, Upload, UploadRefusedError, calibrate_uploads
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,3 +39,15 @@ def test_who_hung_up_is_refused_and_nothing_is_left(
     with pytest.raises(UploadRefusedError):
         calibrate_uploads([Upload("bench.csv", b"x_px,y_px,alpha,beta\n")], caller=caller)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_calibration_takes_the_processor_that_no_answer_wants(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "task.json")
+    command = [sys.executable, "-c", uploaded._BEGIN, str(tmp_path)]
+    with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stderr=-1) as process:
+        with (tmp_path / "task.json").open("w"):  # opened when the process reads it
+            assert os.getpriority(os.PRIO_PROCESS, process.pid) == 19
+            if hasattr(os, "SCHED_IDLE"):
+                assert os.sched_getscheduler(process.pid) == os.SCHED_IDLE
+        process.communicate(timeout=600)
+    assert process.returncode == 1, "it was told to do nothing that it knows"
