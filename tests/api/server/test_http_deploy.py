@@ -77,6 +77,13 @@ def test_the_container_copies_what_the_package_is_made_of():
     assert re.search(r"^USER \d+$", CONTAINER, re.MULTILINE)
 
 
+def test_both_stages_begin_with_one_image_that_cannot_be_exchanged():
+    begun = re.findall(r"^FROM (\S+)", CONTAINER, re.MULTILINE)
+    assert len(begun) == 2
+    assert len(set(begun)) == 1
+    assert re.fullmatch(r"\S+@sha256:[0-9a-f]{64}", begun[0])
+
+
 #: What a container answers, asked of its packages alone: pages, the guide's, and who it is.
 _ASKED = """
 import api, sys
