@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import threading
 import zipfile
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from api.service import calibrations
 from calibrate import uploaded
+from calibrate.uploaded import UploadRefusedError
 from tests.api.browser.visiting import PATIENCE_MS, Visit, follow
 from tests.calibrate.bench import HEADER, grid, spots, sun_of, write
 
@@ -83,6 +86,38 @@ def test_a_wrong_file_is_refused_beside_the_form_which_stays(narrow: Visit, tmp_
     expect(page.get_by_label("Requirement on the error")).to_have_value("0.1deg@rms")
     assert page.get_by_label("Files, each a run of one sensor").evaluate("e => e.files.length") == 1
     require_fits(page)
+
+
+def test_who_waits_reads_how_many_come_first_and_how_long_that_takes(
+    narrow: Visit, turntable: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    may_end = threading.Event()
+
+    def calibrate(*_: object, **__: object) -> None:
+        may_end.wait()
+        raise UploadRefusedError("as all before it")
+
+    monkeypatch.setattr(calibrations, "calibrate_uploads", calibrate)
+    page = narrow.page
+    page.goto(narrow.address + "/calibrate")
+    page.get_by_label("Files, each a run of one sensor").set_input_files(turntable)
+    expect(page.get_by_label("Role of y_px")).to_have_value("reading-2")
+    try:
+        page.evaluate(
+            """async () => {
+                 const form = new FormData();
+                 form.set("file", new File(["1"], "b.csv"));
+                 for (const _ of "12") fetch("/v1/calibrations", { method: "POST", body: form });
+               }"""
+        )
+        while calibrations._CALIBRATIONS.length < 2:
+            page.wait_for_timeout(10)
+        page.get_by_role("button", name="Calibrate", exact=True).click()
+        expect(page.locator("#progress")).to_contain_text("2 in front, about 20 s")
+        require_fits(page)
+    finally:
+        may_end.set()
+    expect(page.get_by_role("alert")).to_contain_text("as all before it")
 
 
 def test_the_sample_is_calibrated_without_a_script(browser: Browser, address: str) -> None:
