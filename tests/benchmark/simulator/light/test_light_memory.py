@@ -35,6 +35,7 @@ def test_kept_light_comes_back_to_the_last_bit_as_the_callers_own(lit):
         np.testing.assert_array_equal(given, light(1, lit))
         given += 1.0  # what a caller does to it stays its own affair
     assert kept.hits == 2
+    assert kept.kept_bytes <= 12 * np.count_nonzero(light(1, lit)), "dark elements take no room"
 
 
 def test_nothing_is_kept_unasked_or_for_another_owner_or_beyond_the_limit():
