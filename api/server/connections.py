@@ -61,6 +61,8 @@ class BoundedProtocol(H11Protocol):
             head = f"HTTP/1.1 429 Too Many Requests\r\nContent-Length: {len(_TOO_MANY)}\r\n"
             transport.write(f"{head}Connection: close\r\n\r\n{_TOO_MANY}".encode())
             transport.close()
+            # It counts no more among those beyond which Uvicorn answers 503, to others too.
+            self.connections.discard(self)
         else:
             self.loop.call_later(PATIENCE_S, self._look)
 

@@ -4,8 +4,11 @@ import asyncio
 import socket
 import time
 from contextlib import suppress
+from unittest.mock import Mock
 
 import pytest
+import uvicorn
+from uvicorn.server import ServerState
 
 from api.server import connections
 from api.server.connections import BoundedProtocol, FewAtOnce
@@ -37,6 +40,19 @@ def test_an_address_keeps_few_connections_and_others_are_answered(place, monkeyp
         assert answer(kept[-1]).startswith(b"HTTP/1.1 200 ")
     for plug in kept:
         plug.close()
+
+
+def test_a_connection_that_is_refused_takes_no_place_of_others(atlas, monkeypatch):
+    """Hundreds at once filled the places of all until they were closed: others heard 503."""
+    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
+    state, config = ServerState(), uvicorn.Config(atlas.app)
+    known = {"sockname": ("127.0.0.1", 80), "peername": ("127.0.0.2", 1)}
+    plugs = [Mock(get_extra_info=known.get) for _ in range(5)]
+    for plug in plugs:
+        protocol = BoundedProtocol(config, state, {}, Mock())
+        protocol.connection_made(plug)
+    assert [plug.close.called for plug in plugs] == [False] * 3 + [True] * 2
+    assert len(state.connections) == 3
 
 
 def test_a_connection_on_which_nothing_is_asked_is_closed(place, monkeypatch):
