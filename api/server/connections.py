@@ -19,6 +19,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 MOST_CONNECTIONS, MOST_REQUESTS = 100, 100
 #: Within which a head has to arrive, and part of an answer to be taken.
 PATIENCE_S = 10.0
+#: Within which who has just connected may still ask a server that ends.
+_LAST_S = 0.5
 _NO_LENGTH = "Expected a body with Content-Length; got Transfer-Encoding."
 _TOO_MANY = "Too many connections or requests of this address at once.\n"
 
@@ -65,6 +67,13 @@ class BoundedProtocol(H11Protocol):
             self.connections.discard(self)
         else:
             self.loop.call_later(PATIENCE_S, self._look)
+
+    def shutdown(self) -> None:
+        """End with the server; a first question may be on its way, which a reset would answer."""
+        if self.cycle is None:
+            self.loop.call_later(_LAST_S, super().shutdown)
+        else:
+            super().shutdown()
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what is no request, or one whose length is not stated."""

@@ -27,11 +27,11 @@ _OPTIONS: dict[str, Any] = {
     "ws": "none",
     "http": "api.server.connections:BoundedProtocol",
     "limit_concurrency": 400,
-    "timeout_graceful_shutdown": 1,
+    "timeout_graceful_shutdown": 5,
 }
 #: Uvicorn's own, which says nothing of starts and stops.
 _LOG: dict[str, Any] = copy.deepcopy(LOGGING_CONFIG)
-_LOG["loggers"]["uvicorn"]["level"] = "WARNING"
+_LOG["loggers"]["uvicorn.error"]["level"] = "WARNING"
 #: Descriptor of the socket that systemd hands over.
 _FIRST_HANDED = 3
 #: How long workers may take to end, one after another, on a busy machine, s: usually 1.5.

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import urllib.request
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -171,6 +172,39 @@ def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
     while left := running(process.pid):
         assert time.monotonic() < deadline, left
         time.sleep(0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are read from /proc")
+def test_a_reload_replaces_both_workers_and_every_question_meanwhile_is_answered():
+    def workers():
+        found = set()
+        for child in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split():
+            with suppress(FileNotFoundError):  # it has just ended
+                if "spawn_main" in Path(f"/proc/{child}/cmdline").read_text():
+                    found.add(child)
+        return found
+
+    command = [*SERVE, "--port", "0", "--workers", "2"]
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        try:
+            assert process.stdout is not None
+            url = process.stdout.readline().split()[3]
+            urllib.request.urlopen(f"{url}/healthz", timeout=600).close()
+            first = workers()
+            assert len(first) == 2
+            process.send_signal(signal.SIGHUP)
+            while first & (now := workers()) or len(now) < 2:
+                with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
+                    assert answer.status == 200
+        finally:
+            process.kill()
+    deadline = time.monotonic() + 60
+    while running(process.pid):
+        assert time.monotonic() < deadline, "workers outlive the process that started them"
+        time.sleep(0.1)
 
 
 def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeypatch, tmp_path):
