@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.special import fresnel
 
 from benchmark import datasets
 from benchmark.simulator.light.stray_slope import UnevenScene
@@ -130,21 +131,36 @@ def test_rims_a_whole_hole_apart_let_no_light_through() -> None:
     assert not round_intensity(places, places, numbers, apart=2.0).any()
 
 
+FOIL = RectanglePattern(
+    half_mm=(0.05, 1.0),
+    thickness_mm=0.1,
+    height_mm=1.0,
+    glass=CoverGlass(),
+    sun=SolarDisc(),
+    spectrum=SUNLIT_SILICON,
+    pitch_mm=0.01,
+    reach_mm=1.0,
+    widest_deg=70.0,
+)
+
+
 def test_a_foil_that_shades_its_whole_slit_leaves_no_light_at_the_ends() -> None:
-    """60 deg off along x, a foil 0.1 mm thick shades more than a slit 0.02 mm wide."""
-    narrow = RectanglePattern(
-        half_mm=(0.01, 1.0),
-        thickness_mm=0.1,
-        height_mm=1.0,
-        glass=CoverGlass(),
-        sun=SolarDisc(),
-        spectrum=SUNLIT_SILICON,
-        pitch_mm=0.01,
-        reach_mm=1.0,
-        widest_deg=70.0,
-    )
+    """60 deg off along x, a foil 0.1 mm thick shades 0.17 mm, and the slit is 0.1 mm wide."""
     oblique = from_angles(np.array([5.0]), np.array([60.0]))
     assert oblique[0, 0] > oblique[0, 2] > 0.0, "off along x"
-    end = narrow._end(oblique)
+    end = FOIL._end(oblique)
     assert end.shape[0] == 1
     assert not end.any()
+
+
+@pytest.mark.parametrize("height_mm", [0.25, 1.0, 4.0])
+def test_a_foil_softens_an_edge_by_one_length_wherever_the_light_is_caught(
+    height_mm: float,
+) -> None:
+    """By what the light behind its upper rim lacks, in Fresnel's unit for the foil's thickness."""
+    places = np.arange(0.0, 100.0, 1e-3)
+    sine, cosine = fresnel(places)
+    lit = (1 - 1j) / 2 * (cosine + 0.5 + 1j * (sine + 0.5))
+    lacking = 1e-3 * float(np.sum(1 - lit).imag)
+    softness = replace(FOIL, height_mm=height_mm).softness
+    assert softness * math.sqrt(height_mm / 0.1) == pytest.approx(lacking, rel=0.01)
