@@ -7,7 +7,7 @@ from statistics import geometric_mean
 
 import pytest
 
-from benchmark.contract import Cell
+from benchmark.contract import FLIGHT, Cell
 from benchmark.leaderboard import fresh_units
 from benchmark.leaderboard.fresh_units import FRESH, first_groups
 from benchmark.leaderboard.scope import UNITS
@@ -36,6 +36,28 @@ def test_a_first_group_has_the_least_geometric_mean_over_the_units_of_the_board(
     assert mean(leader) <= min(map(mean, [*others, *behind]))
     assert 0 < len(behind) <= fresh_units.BEHIND
     assert [mean(one) for one in behind] == sorted(mean(one) for one in behind)
+
+
+def test_a_board_in_flight_is_led_by_what_errs_least_in_flight(parts: Parts) -> None:
+    scores = Store(PUBLISHED).scores()
+    (leader, *others), behind = first_groups(scores, parts, in_flight=True)[NAME]
+
+    def mean(cell: Cell) -> float:
+        units = [scores[replace(cell, unit=unit)]["rms_all_answers_deg"] for unit in range(UNITS)]
+        return geometric_mean(units)
+
+    assert {one.condition for one in (leader, *others, *behind)} == {FLIGHT}
+    assert all(mean(leader) <= mean(other) for other in others)
+
+
+@pytest.mark.slow
+def test_a_seed_draws_other_suns_units_and_missions(parts: Parts) -> None:
+    scores = Store(PUBLISHED)
+    (one,) = fresh_units.score_fresh_units(scores, parts=parts, in_flight=True, seeds=[1])
+    (other,) = fresh_units.score_fresh_units(scores, parts=parts, in_flight=True, seeds=[2])
+    assert one.leader == other.leader
+    assert one.over != other.over or one.group_over != other.group_over
+    assert 1.0 <= one.group_over <= one.over
 
 
 @pytest.mark.slow
