@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from algorithms.chain import Scored
-from algorithms.contract import Extractor, Floats
+from algorithms.contract import Extractor
 from algorithms.pipeline import Pipeline
 from algorithms.threads import one_thread
 from benchmark.contract import FLIGHT
@@ -23,9 +23,12 @@ from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import Report
 from benchmark.simulator.flight.mission import EFFECTS, Mission
+from benchmark.simulator.light.memory import memory
 
 #: Units whose squares are pooled: effects are drawn for each.
 UNITS = 3
+#: Share by which errors together may differ from the root of their squares without a word.
+NEAR = 0.15
 
 
 class FlightTask(NamedTuple):
@@ -65,50 +68,84 @@ class FlightEffects(Report[str]):
         flown |= {f"{name} alone": mission.alone(name) for name in EFFECTS}
         flown |= {f"without {name}": mission.without(name) for name in EFFECTS}
         with one_thread():
-            errors = {
-                name: [_error_deg(task, one, unit) for unit in range(UNITS)]
-                for name, one in flown.items()
-            }
-        pooled = {name: math.sqrt(float(np.mean(np.square(e)))) for name, e in errors.items()}
+            units = [_errors_deg(task, flown, unit) for unit in range(UNITS)]
+        pooled = {
+            name: math.sqrt(math.fsum(unit[name] ** 2 for unit in units) / UNITS) for name in flown
+        }
         about = {"extractor": task.extractor.about.name, "model": task.model.about.name}
         return [(task.preset.name, {**about, **pooled})]
 
     def lines(self, rows: Mapping[str, Row]) -> Iterator[str]:
-        """Yield the effects of each data set, the costliest first."""
+        """Yield the effects of each data set, the costliest first, and a table of all of them."""
         for name, row in rows.items():
             none, whole = row["none"], row["all"]
             yield f"{name}: {row['extractor']} + {row['model']}, {UNITS} units"
             yield f"  on the ground {none:.3g} deg, in flight {whole:.3g} deg"
-            added = {one: _added(row[f"{one} alone"], none) for one in EFFECTS}
-            for one in sorted(EFFECTS, key=lambda one: -added[one]):
-                rest = row[f"without {one}"]
-                yield f"  {one:<10} adds {added[one]:.2g} deg, without it {rest:.3g}"
+            added = _added_by_effect(row)
+            for one, size in added.items():
+                yield f"  {one:<10} adds {size:.2g} deg, without it {row[f'without {one}']:.3g}"
             together = math.hypot(none, *added.values())
             times = whole / together
             yield f"  root of squares {together:.3g} deg; in flight {times:.2f} times that"
+            if abs(times - 1.0) > NEAR:
+                yield f"  not as squares: {', '.join(_interacting(row, added))}"
+        yield ""
+        yield "| data set | on the ground, deg | in flight, deg | largest effects: alone, without |"
+        yield "| --- | ---: | ---: | --- |"
+        for name, row in sorted(rows.items(), key=lambda pair: float(pair[1]["none"])):
+            largest = [
+                f"{one} {size:.2g}, {row[f'without {one}']:.2g}"
+                for one, size in list(_added_by_effect(row).items())[:2]
+            ]
+            yield f"| {name} | {row['none']:.2g} | {row['all']:.2g} | {'; '.join(largest)} |"
 
 
-def _added(error_deg: float, none_deg: float) -> float:
-    return math.sqrt(max(error_deg**2 - none_deg**2, 0.0))
+def _added_by_effect(row: Row) -> dict[str, float]:
+    """Return what each effect alone adds in squares, degrees, the largest first."""
+    none = row["none"]
+    added = {one: math.sqrt(max(row[f"{one} alone"] ** 2 - none**2, 0.0)) for one in EFFECTS}
+    return dict(sorted(added.items(), key=lambda pair: -pair[1]))
 
 
-def _error_deg(task: FlightTask, mission: Mission, unit: int) -> float:
-    """Return the RMS error of a unit on a mission, over observable samples with an answer."""
-    setup = task.preset.condition(FLIGHT)
+def _interacting(row: Row, added: Mapping[str, float]) -> list[str]:
+    """List the effects that, left out of all, take off another square than they add alone."""
+    whole = row["all"] ** 2
+    apart = {one: whole - row[f"without {one}"] ** 2 - added[one] ** 2 for one in EFFECTS}
+    return [
+        f"{one} ({'more' if apart[one] > 0 else 'less'} with the others than alone)"
+        for one in sorted(EFFECTS, key=lambda one: -abs(apart[one]))
+        if abs(apart[one]) > NEAR * whole
+    ]
+
+
+def _errors_deg(task: FlightTask, missions: Mapping[str, Mission], unit: int) -> dict[str, float]:
+    """Return the RMS error of a unit on missions, over observable samples with an answer."""
+    # missions that move nothing show the same Suns
+    memory.cache_for((task.preset.name, unit), task.preset.name)
+    extractor = task.extractor.for_sensor(task.preset.geometry)
+    fitted: dict[Any, Pipeline] = {}
+    errors = {}
+    for name, mission in missions.items():
+        seen_by = _flown(task.preset, mission).for_unit(unit)
+        by = corrections(seen_by, FLIGHT)
+        # what is so on the ground, too
+        built = mission.ghost_share, mission.inl_lsb
+        if built not in fitted:
+            poses = seen_by.generate(FLIGHT, "calibration")
+            told = features_of(extractor, poses, by["calibration"])
+            model = task.model.for_sensor(task.preset.geometry, extractor.about.kind)
+            pipeline = Pipeline(extractor, model)
+            fitted[built] = pipeline.fit_features(told, poses.truth, poses.context)
+        test = seen_by.generate(FLIGHT, "test")
+        asked = features_of(extractor, test, by["test"])
+        found = separation_deg(fitted[built].predict_features(asked, test.context), test.sun)
+        errors[name] = float(np.sqrt(np.nanmean(found**2)))
+    memory.forget()
+    return errors
+
+
+def _flown(preset: Preset, mission: Mission) -> Preset:
+    setup = preset.condition(FLIGHT)
     earth = setup.earth if mission.earthlight else None
     flight = dataclasses.replace(setup, mission=mission, earth=earth)
-    preset = dataclasses.replace(task.preset, setups={**task.preset.setups, FLIGHT: flight})
-    seen_by = preset.for_unit(unit)
-    extractor = task.extractor.for_sensor(preset.geometry)
-    by = corrections(seen_by, FLIGHT)
-
-    def found(split: str) -> tuple[Floats, Any]:
-        samples = seen_by.generate(FLIGHT, split)
-        return features_of(extractor, samples, by[split]), samples
-
-    told, poses = found("calibration")
-    asked, test = found("test")
-    model = task.model.for_sensor(preset.geometry, extractor.about.kind)
-    pipeline = Pipeline(extractor, model).fit_features(told, poses.truth, poses.context)
-    errors = separation_deg(pipeline.predict_features(asked, test.context), test.sun)
-    return float(np.sqrt(np.nanmean(errors**2)))
+    return dataclasses.replace(preset, setups={**preset.setups, FLIGHT: flight})

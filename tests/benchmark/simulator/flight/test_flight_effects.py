@@ -20,7 +20,16 @@ def test_effects_are_listed_by_what_they_add_in_squares() -> None:
     assert said[:2] == ["a: e + m, 3 units", "  on the ground 3 deg, in flight 5 deg"]
     assert said[2] == "  dust       adds 4 deg, without it 3"
     assert any(line.startswith("  heat       adds 0 deg") for line in said)
-    assert said[-1] == "  root of squares 5 deg; in flight 1.00 times that"
+    assert said[-5] == "  root of squares 5 deg; in flight 1.00 times that"
+    assert said[-1] == "| a | 3 | 5 | dust 4, 3; launch 0, 3 |"
+
+
+def test_effects_that_do_not_add_as_squares_are_named() -> None:
+    row = {"extractor": "e", "model": "m", "none": 3.0, "all": 10.0}
+    row |= {f"without {name}": 10.0 for name in EFFECTS} | {"without dust": 3.0}
+    row |= {f"{name} alone": 3.0 for name in EFFECTS} | {"dust alone": 5.0}
+    said = list(FlightEffects().lines({"a": row}))
+    assert "  not as squares: dust (more with the others than alone)" in said
 
 
 @pytest.mark.slow
