@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Self, cast, get_args
 
 import numpy as np
@@ -418,6 +418,19 @@ class Preset:
         if lifetime is not None and split != "calibration":
             return self._dark_again(condition, lifetime)
         renewed = split != "calibration" and self.condition(condition).renewed
+        if condition == self.conditions[0] and not renewed:
+            return dict(self._on_ground)
+        return self._reference_readings(condition, renewed=renewed)
+
+    @cached_property
+    def _on_ground(self) -> dict[str, NDArray[Any]]:
+        """References of the first condition, by which others are corrected, too."""
+        return self._reference_readings(self.conditions[0], renewed=False)
+
+    def _reference_readings(self, condition: str, *, renewed: bool) -> dict[str, NDArray[Any]]:
+        sensor = cast(
+            "UnitSpread", self.condition(condition).referred("test" if renewed else "calibration")
+        )
         named = (condition, "references", *(("renewed",) if renewed else ()))
         streams = NoiseStreams.named(*self._of_unit(*self.streams, *named))
         pattern = self.fixed_pattern(condition, "test" if renewed else "calibration")
@@ -433,7 +446,8 @@ class Preset:
         unit = (self.unit,) if self.unit else ()
         built = sensor.fixed_pattern(*self.streams, "unit", *unit)
         streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, "eclipse"))
-        again = cast("UnitSpread", sensor).reference_readings(built, self.offered, streams)
+        darks = dataclasses.replace(self.offered, flats=0)
+        again = cast("UnitSpread", sensor).reference_readings(built, darks, streams)
         found = {}
         for name, reading in ground.items():
             dark = name.replace("flat_", "dark_")

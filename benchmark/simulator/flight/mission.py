@@ -27,7 +27,7 @@ from benchmark.simulator.flight.orbit import CircularOrbit, sun_direction
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.readout.detectors import DarkCurrent
-from benchmark.simulator.readout.pixel_errors import PixelErrors
+from benchmark.simulator.readout.pixel_errors import PixelErrors, drawn
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.solar_cells import SolarCells
 
@@ -333,8 +333,8 @@ class Lifetime:
             spread = mission.prnu_per_year * moment.age_years
             if not spread:
                 return pattern
-            drawn = generator(*self.names, "dose").standard_normal(shape)
-            return {**pattern, "gain": np.maximum(gain * (1.0 + spread * drawn), 0.0)}
+            dose = drawn("normal", shape, *self.names, "dose")
+            return {**pattern, "gain": np.maximum(gain * (1.0 + spread * dose), 0.0)}
         per_k, per_year = generator(*self.names, "gains").standard_normal((2, *shape))
         warmer = moment.temperature_c + _ZERO_C_IN_K - REFERENCE_K
         factor = (1.0 + mission.gain_per_k * warmer * per_k) * (

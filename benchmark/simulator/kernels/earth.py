@@ -20,20 +20,19 @@ Vector = tuple[float, float, float]
 
 
 @compiled
-def _cover(x: float, y: float, z: float, earth: Floats, waves: Floats) -> float:
-    """Share of clouds over a point of the ground, a unit vector from Earth's centre."""
+def _field(x: float, y: float, z: float, waves: Floats) -> float:
+    """Cloud field over a point of the ground, a unit vector from Earth's centre."""
     field = 0.0
     for m in range(waves.shape[0]):
         field += math.cos(waves[m, 0] * x + waves[m, 1] * y + waves[m, 2] * z + waves[m, 3])
-    field *= math.sqrt(2.0 / waves.shape[0])
-    return float(min(max((field - earth[3]) / earth[4] + 0.5, 0.0), 1.0))
+    return field * math.sqrt(2.0 / waves.shape[0])
 
 
 @compiled
-def cover_of(out: Floats, ground: Floats, earth: Floats, waves: Floats) -> None:
-    """Write the share of clouds (P,) over ground (P, 3)."""
+def field_of(out: Floats, ground: Floats, waves: Floats) -> None:
+    """Write the cloud field (P,) over ground (P, 3)."""
     for p in range(out.shape[0]):
-        out[p] = _cover(ground[p, 0], ground[p, 1], ground[p, 2], earth, waves)
+        out[p] = _field(ground[p, 0], ground[p, 1], ground[p, 2], waves)
 
 
 @compiled
@@ -52,7 +51,8 @@ def _radiance(sight: Vector, nadir: Vector, sun: Vector, earth: Floats, waves: F
         return 0.0
     reflectance = earth[1]
     if waves.shape[0] > 0:
-        reflectance += (earth[2] - earth[1]) * _cover(x, y, z, earth, waves)
+        cover = (_field(x, y, z, waves) - earth[3]) / earth[4] + 0.5
+        reflectance += (earth[2] - earth[1]) * min(max(cover, 0.0), 1.0)
     return float(reflectance * lit / math.pi)
 
 

@@ -64,14 +64,7 @@ class Clouds:
 
     def table(self, radius_km: float) -> Floats:
         """(M, 4) wave vectors over a unit sphere, and phases."""
-        stream = generator("earth", "clouds")
-        rows = []
-        for _ in range(self.waves):
-            x, y, z = uniform_direction(stream)
-            low, high = 1.0 / self.longest_km, 1.0 / self.shortest_km
-            number = 2.0 * math.pi * radius_km * (low + (high - low) * stream.random())
-            rows.append((number * x, number * y, number * z, 2.0 * math.pi * stream.random()))
-        return np.array(rows)
+        return _table(self, radius_km).copy()  # kernels are compiled for arrays of their own
 
     def threshold(self, radius_km: float) -> float:
         """Value of the field at which the mean cover is `cover`."""
@@ -79,15 +72,19 @@ class Clouds:
 
     def over(self, ground: Floats, radius_km: float) -> Floats:
         """(P,) share of clouds over ground (P, 3), unit vectors from Earth's centre."""
-        return self._over(ground, radius_km, self.threshold(radius_km))
+        return self.share(self.field(ground, radius_km), self.threshold(radius_km))
 
-    def _over(self, ground: Floats, radius_km: float, threshold: float) -> Floats:
-        from benchmark.simulator.kernels.earth import cover_of  # noqa: PLC0415 - Numba on demand
+    def field(self, ground: Floats, radius_km: float) -> Floats:
+        """(P,) the sum of waves, of mean square 1, over ground (P, 3)."""
+        from benchmark.simulator.kernels.earth import field_of  # noqa: PLC0415 - Numba on demand
 
         out = np.empty(len(ground))
-        numbers = np.array([1.0, 0.0, 0.0, threshold, self.softness])
-        cover_of(out, np.ascontiguousarray(ground), numbers, self.table(radius_km))
+        field_of(out, np.ascontiguousarray(ground), self.table(radius_km))
         return out
+
+    def share(self, field: Floats, threshold: float) -> Floats:
+        """(P,) share of clouds where the field is (P,), cut off at a threshold."""
+        return np.clip((field - threshold) / self.softness + 0.5, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -124,6 +121,18 @@ class CloudyEarth(Earth):
 
 
 @lru_cache(maxsize=8)
+def _table(clouds: Clouds, radius_km: float) -> Floats:
+    stream = generator("earth", "clouds")
+    low, high = 1.0 / clouds.longest_km, 1.0 / clouds.shortest_km
+    rows = []
+    for _ in range(clouds.waves):
+        x, y, z = uniform_direction(stream)
+        number = 2.0 * math.pi * radius_km * (low + (high - low) * stream.random())
+        rows.append((number * x, number * y, number * z, 2.0 * math.pi * stream.random()))
+    return np.array(rows)
+
+
+@lru_cache(maxsize=8)
 def _threshold(clouds: Clouds, radius_km: float) -> float:
     z = [1.0 - 2.0 * (n + 0.5) / _POINTS for n in range(_POINTS)]
     ground = np.array(
@@ -136,10 +145,10 @@ def _threshold(clouds: Clouds, radius_km: float) -> float:
             for n, h in enumerate(z)
         ]
     )
-    low, high = -5.0, 5.0
+    low, high, field = -5.0, 5.0, clouds.field(ground, radius_km)
     for _ in range(40):
         middle = (low + high) / 2.0
-        mean = math.fsum(clouds._over(ground, radius_km, middle)) / _POINTS  # noqa: SLF001 - a dataclass method cannot be cached
+        mean = math.fsum(clouds.share(field, middle).tolist()) / _POINTS
         if mean > clouds.cover:
             low = middle
         else:

@@ -140,7 +140,8 @@ class Earth:
             sight = local[:, :1] * first[n] + local[:, 1:2] * second[n] + local[:, 2:] * nadir[n]
             ground = (distance[:, None] * sight - centre * nadir[n]) / self.radius_km
             lit = np.maximum(_dot(ground, sun[n]), 0.0)
-            radiance = self.sent_back(ground) / math.pi * lit * solid_angle
+            day, radiance = lit > 0.0, np.zeros(len(lit))
+            radiance[day] = self.sent_back(ground[day]) / math.pi * lit[day] * solid_angle[day]
             for k in range(len(normals)):
                 seen = RESPONSES[response](_dot(sight, normals[k]))
                 out[n, k] = float(np.sum(radiance * seen))

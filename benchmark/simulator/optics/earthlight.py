@@ -12,7 +12,7 @@ light that is a few thousandths of the Sun's to begin with.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -100,6 +100,7 @@ def on_elements(
     camera: Camera,
     lit: Callable[[Camera, Scene], Floats],
     view: EarthInView,
+    named_by: Hashable,
     nodes: tuple[int, int] = (RINGS, SPOKES),
 ) -> Floats:
     """(N, K) response of elements behind a mask to the Earth, in the units of `lit`.
@@ -112,6 +113,8 @@ def on_elements(
         (J, K) response of the sensor with another camera to a scene.
     view
         What is seen.
+    named_by
+        All that `lit` depends on.
     nodes
         Rings and spokes of the sky.
     """
@@ -119,13 +122,22 @@ def on_elements(
 
     directions, solid = sky(*nodes)
     count = len(directions)
-    response = lit(upright_camera(camera), Scene(directions, np.ones(count), np.zeros(count)))
-    seen = response.any(axis=1)
-    weights = np.ascontiguousarray((response * solid[:, None])[seen])
-    out = np.empty((len(view.nadir), response.shape[1]))
-    sources = np.ascontiguousarray(directions[seen]), weights
-    gather(out, sources, view.head(camera.assembly), view.earth.tables())
-    return out
+    whole = Scene(directions, np.ones(count), np.zeros(count))
+    # splits see the same sky
+    response = memory.render(
+        ("on_elements", named_by, nodes), lambda: lit(upright_camera(camera), whole)
+    )
+
+    def gathered() -> Floats:
+        seen = response.any(axis=1)
+        weights = np.ascontiguousarray((response * solid[:, None])[seen])
+        out = np.empty((len(view.nadir), response.shape[1]))
+        sources = np.ascontiguousarray(directions[seen]), weights
+        gather(out, sources, view.head(camera.assembly), view.earth.tables())
+        return out
+
+    earth = view.earth, digest_of(view.nadir, view.sun)
+    return memory.render(("on_elements", named_by, nodes, *earth), gathered)
 
 
 def on_points(

@@ -10,8 +10,7 @@ from typing import Literal
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.seeds import generator
-from benchmark.simulator.readout.pixel_errors import PixelErrors
+from benchmark.simulator.readout.pixel_errors import PixelErrors, drawn
 
 Response = Literal["cosine", "kelly"]
 
@@ -131,9 +130,9 @@ class PixelArray:
         ``gain`` and ``dark_e`` of `shape`, relative and electrons; ``column_e`` (its last size)
         where columns have offsets.
         """
-        gain = 1.0 + self.prnu * generator(*names, "prnu").standard_normal(shape)
+        gain = 1.0 + self.prnu * drawn("normal", shape, *names, "prnu")
         dark = self.dark.level() * self.exposure_s
-        dark_e = dark * (1.0 + self.dsnu * generator(*names, "dsnu").standard_normal(shape))
+        dark_e = dark * (1.0 + self.dsnu * drawn("normal", shape, *names, "dsnu"))
         unit = {"gain": np.maximum(gain, 0.0), "dark_e": np.maximum(dark_e, 0.0)}
         if self.errors.hot:
             unit["dark_e"] *= self.errors.dark_factor(shape, *names)

@@ -3,11 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.seeds import generator
+
+
+@lru_cache(maxsize=5)  # all kinds of one unit
+def drawn(
+    kind: Literal["normal", "uniform", "exponential"], shape: tuple[int, ...], *names: str | int
+) -> Floats:
+    """Draw a number for each pixel of `shape`, read-only: of a unit always the same ones."""
+    stream = generator(*names)
+    if kind == "exponential":
+        found = stream.standard_exponential(shape, method="inv")
+    else:
+        found = stream.random(shape) if kind == "uniform" else stream.standard_normal(shape)
+    found.flags.writeable = False
+    return found
 
 
 @dataclass(frozen=True)
@@ -64,8 +80,8 @@ class PixelErrors:
         Pixels turn hot in an order of their own: those of a smaller dose are hot under a larger
         one, too.
         """
-        turn = generator(*names, "hot").random(shape)
-        strength = generator(*names, "hot-dark").standard_exponential(shape, method="inv")
+        turn = drawn("uniform", shape, *names, "hot")
+        strength = drawn("exponential", shape, *names, "hot-dark")
         return np.where(turn < self.hot, 1.0 + self.hot_factor * strength, 1.0)
 
     def column_offsets(self, columns: int, *names: str | int) -> Floats:

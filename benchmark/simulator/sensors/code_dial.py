@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.light.memory import digest_of
 from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.diffraction_tables import landing_points, layers
 from benchmark.simulator.optics.earthlight import EarthInView, on_elements
@@ -228,7 +229,8 @@ class CodeDialSensor(CurrentSensor):
         def lit(camera: Camera, sky: Scene) -> Floats:
             return replace(self, camera=camera, spectrum=None).lit(sky, pattern)
 
-        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
+        unit = self, *(digest_of(np.asarray(pattern[name])) for name in sorted(pattern))
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun), unit)
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""

@@ -64,7 +64,7 @@ class FourElements(CurrentSensor):
         def lit(camera: Camera, sky: Scene) -> Floats:
             return replace(self, camera=camera).lit(sky)
 
-        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
+        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun), self)
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""

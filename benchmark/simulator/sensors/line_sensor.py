@@ -119,9 +119,10 @@ class LineSensor(PixelSensor):
         detector = self.detector
         pixels = detector.columns, detector.pitch_mm, self.pixel_height_mm, self.fill_factor
         key = (type(self).__name__, self.camera, pixels, self.axes, self.errors, self.spectrum)
-        flux = memory.render((*key, scene.sun.tobytes()), lambda: self._render(scene.sun))
-        if self.ghost is not None:
-            self._add_ghosts(flux, scene.sun, self.ghost)
+        suns, ghost = scene.sun.tobytes(), self.ghost
+        flux = memory.render((*key, suns), lambda: self._render(scene.sun))
+        if ghost is not None:
+            flux += memory.render((*key, ghost, suns), lambda: self._ghosts(scene.sun, ghost))
         flux *= scene.irradiance[:, None]
         if detector.tunnel:
             cosine = self.camera.assembly.to_head(scene.sun)[:, 2]
@@ -188,8 +189,8 @@ class LineSensor(PixelSensor):
             expose(part, self._slits(axis), along, light, numbers)
             flux[:, number * columns : (number + 1) * columns] = part
 
-    def _add_ghosts(self, flux: Floats, sun: Floats, ghost: Ghost) -> None:
-        """Add the light of the mean sunlight that comes a second time.
+    def _ghosts(self, sun: Floats, ghost: Ghost) -> Floats:
+        """(N, W) light of the mean sunlight that comes a second time.
 
         The plate's inclination is left out.
         """
@@ -199,7 +200,8 @@ class LineSensor(PixelSensor):
         near, far, light = ghost.paths(self.camera, sun)
         paths = np.stack([near, far]) / pitch
         numbers = -columns / 2.0, self.fill_factor, 1.0 if ghost.surface == "mask" else 0.0
-        for number, axis in enumerate(self.axes):
+        parts = []
+        for axis in self.axes:
             slits = self._slits(axis)
             part = np.zeros((len(sun), columns))
             along = np.ascontiguousarray(paths if axis == "x" else paths[..., ::-1])
@@ -207,7 +209,8 @@ class LineSensor(PixelSensor):
             count = _LINES if np.abs(slits[:, 6]).max() > _UPRIGHT else 1
             lines = ((np.arange(count) + 0.5) / count - 0.5) * (self.pixel_height_mm / pitch)
             add_ghosts(part, slits, (along, light), lines, numbers)
-            flux[:, number * columns : (number + 1) * columns] += part
+            parts.append(part)
+        return np.concatenate(parts, axis=1)
 
     def _tilt(self, paths: Floats, tilt: float) -> None:
         """Let the plate's thickness stand along its own, tilted normal."""
