@@ -83,17 +83,33 @@ def test_what_is_drawn_has_its_amount_as_standard_deviation(effect, name, amount
     assert abs(np.mean(found)) < 4.0 * amount / math.sqrt(len(found))
 
 
-def test_dust_moves_the_light_of_an_opening_as_the_part_it_covers() -> None:
+def lit_centre(lit: np.ndarray, x: np.ndarray) -> float:
+    """Return how far the light of an opening moved from its middle, of places and what is lit."""
+    return float(-x[lit].mean())
+
+
+def test_dust_moves_the_light_of_a_square_opening_as_a_strip_of_its_area_at_the_rim() -> None:
     _, sensor = camera()
-    lifetime = only("dust", dust_um=10.0).lifetime("a unit")
+    width, dust = 0.1, 0.01
+    lifetime = only("dust", dust_um=1e3 * dust).lifetime("a unit")
     moved = np.hypot(*lifetime.at(Moment(25.0, 0.0), sensor).shift_mm[:2])
-    # by brute force: the centre of a round opening less a particle just within its rim
-    x, y = np.meshgrid(*[np.linspace(-0.05, 0.05, 2001)] * 2)
-    lit = np.hypot(x, y) <= 0.05
-    lit &= np.hypot(x - 0.045, y) > 0.005
-    # the formula leaves out that a particle stands off the rim by its radius, and a square's area
-    assert moved == pytest.approx(-x[lit].mean(), rel=0.3)
-    assert moved == pytest.approx(math.pi * 0.01**2 / (8.0 * 0.1))
+    x, _ = np.meshgrid(*[(np.arange(2000) + 0.5) / 2000 * width - width / 2.0] * 2)
+    covered = math.pi * dust**2 / 4.0
+    assert moved == pytest.approx(lit_centre(x < width / 2.0 - covered / width, x), rel=0.02)
+
+
+def test_dust_as_a_disc_within_a_round_opening_moves_its_light_by_a_known_ratio_more() -> None:
+    _, sensor = camera()
+    width, dust = 0.1, 0.01
+    lifetime = only("dust", dust_um=1e3 * dust).lifetime("a unit")
+    moved = np.hypot(*lifetime.at(Moment(25.0, 0.0), sensor).shift_mm[:2])
+    x, y = np.meshgrid(*[(np.arange(2000) + 0.5) / 2000 * width - width / 2.0] * 2)
+    lit = np.hypot(x, y) <= width / 2.0
+    lit &= np.hypot(x - (width - dust) / 2.0, y) > dust / 2.0
+    disc = lit_centre(lit, x)
+    # areas in the ratio of squares, a half less the other half from the middle
+    assert disc == pytest.approx(dust**2 / (2.0 * (width + dust)), rel=0.02)
+    assert moved == pytest.approx(disc * math.pi / 4.0 * (1.0 + dust / width), rel=0.02)
 
 
 def test_gains_turn_a_direction_as_the_closed_form_of_three_faces() -> None:
