@@ -354,18 +354,20 @@ class Lifetime:
         step, codes = converter
         phase = math.tau * float(generator(*self.names, "converter").random())
         # by a table: NumPy's sine has other last bits on other processors
-        table = np.array(
-            [amount * math.sin(math.tau * n / _WAVE + phase) for n in range(_WAVE + 1)]
-        )
-        place = np.asarray(observations, np.float64) / (step * codes) * _WAVE
-        bent = table[np.clip(np.rint(place), 0, _WAVE).astype(np.int64)]
+        wave = np.array([amount * math.sin(math.tau * n / _WAVE + phase) for n in range(_WAVE + 1)])
+
+        def bent(readings: NDArray[Any]) -> NDArray[Any]:
+            place = np.asarray(readings, np.float64) / (step * codes) * _WAVE
+            return wave[np.clip(np.rint(place), 0, _WAVE).astype(np.int64)]
+
         if np.issubdtype(observations.dtype, np.integer):
-            most = int(codes) - 1
-            read = np.clip(np.rint(observations + bent), 0, most)
+            # every code once, and frames by the table of them
+            known, most = np.arange(int(codes)), int(codes) - 1
+            read = np.clip(np.rint(known + bent(known)), 0, most)
             # a full pixel stays full, an empty one empty
-            read = np.where((observations == 0) | (observations >= most), observations, read)
-            return np.asarray(read.astype(observations.dtype))
-        return np.asarray(observations + step * np.rint(bent))
+            read = np.where((known == 0) | (known >= most), known, read)
+            return np.take(read.astype(observations.dtype), observations)
+        return np.asarray(observations + step * np.rint(bent(observations)))
 
 
 #: Places in the table of a converter's bend.
