@@ -1,0 +1,1 @@
+"""Masks compared at equal height, detector and field: what is left is the mask's own."""
