@@ -12,6 +12,7 @@ import numpy as np
 from registry.calibration import Calibration, calibration
 from registry.design_table import Flags, Numbers, Positions
 from registry.designs import Place
+from registry.height_order import HeightOrder, height_order
 from registry.judging import MEETS, MISSES, PARTS, Question, States
 from registry.ranking import ALIKE, Sort, TaskMeasure, in_words, joint_order, task_measure
 from registry.relaxation import Explanation, explain
@@ -122,6 +123,14 @@ class Answer:
         """The order as a sentence."""
         tasks = self.question.requirements.include.get("task", ())
         return in_words(self.sort, tasks, asked=self.is_asked, by_class=self._by_class)
+
+    @cached_property
+    def height_order(self) -> HeightOrder | None:
+        """How far the errors follow 1/height; None where nothing is asked, or of too few."""
+        if not self.is_asked:
+            return None
+        best = ((one.shown_deg, one.best and one.best.pipeline) for one in self.architectures)
+        return height_order((error, made.height_mm if made else None) for error, made in best)
 
     @cached_property
     def explanation(self) -> Explanation | None:

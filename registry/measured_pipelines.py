@@ -89,6 +89,8 @@ class MeasuredPipeline:
     flight, flight_units_deg, flight_ratios
         In flight: what `nominal`, `unit_own_error_deg` and `unit_ratios` are on the ground; None
         for a pipeline that was not flown.
+    height_mm
+        Distance of mask or lens and detector; None for sensors without one.
     own
         Of a pipeline in flight (`flown`), the same on the ground; None on the ground.
     """
@@ -111,6 +113,7 @@ class MeasuredPipeline:
     flight: Score | None = None
     flight_units_deg: tuple[float, ...] = ()
     flight_ratios: tuple[float, ...] = (1.0,) * UNITS
+    height_mm: float | None = None
     own: MeasuredPipeline | None = field(default=None, hash=False, repr=False)
 
     @property

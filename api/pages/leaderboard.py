@@ -19,6 +19,7 @@ from api.schema.parameters import GIVEN
 from api.schema.table import columns_of
 from api.service.documents import Document
 from api.web.dependencies import Known
+from benchmark.leaderboard.architectures import order_of_heights
 from benchmark.leaderboard.overview import ROLES, overview
 from benchmark.leaderboard.summaries import tally
 
@@ -55,6 +56,7 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
         entity=schema_org.record(identity(), landing, known.measurements.digest),
         order=order,
         tally=tally(rows),
+        heights=(found := order_of_heights(rows)) and found.sentence,
         roles=ROLES,
         record=known.measurements.record,
     )

@@ -31,6 +31,16 @@ class OverviewQuery(TableQuestion):
     mask: Several[Mask] = several("Only data sets with this mask.")
 
 
+class HeightOrder(Shape):
+    """Rank correlation of error and 1/height over architectures."""
+
+    correlation: float = Field(description="Spearman's rank correlation.")
+    p_value: float = Field(description="Share of permutations with such a correlation.")
+    sensors: int = Field(description="Architectures compared.")
+    without: int = Field(description="Architectures without a height or an error, left out.")
+    sentence: str = Field(description="The same in words; empty unless most of the order follows.")
+
+
 class BestOfArchitecture(Shape):
     """The best pipeline of an architecture under the first condition of its data sets.
 
@@ -52,6 +62,9 @@ class BestOfArchitecture(Shape):
     flight_low_deg: float | None = Field(description="Smallest error in flight of a unit.")
     flight_high_deg: float | None = Field(description="Largest error in flight of a unit.")
     own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    height_mm: float | None = Field(description="Height of mask or lens; null if there is none.")
+    own_at_1_mm_deg: float | None = Field(description="Own error scaled to a height of 1 mm.")
+    flight_at_1_mm_deg: float | None = Field(description="Error in flight, scaled likewise.")
     own_se: float | None = Field(description="Relative standard error of the own error.")
     quoted_deg: float | None = Field(description="Error on odd units of the best on even units.")
     on_bench_deg: float | None = Field(description="Error expected on the standard bench.")
@@ -91,6 +104,9 @@ class Architectures(Listing):
     """A page of architectures, by detector and mask."""
 
     items: list[BestOfArchitecture]
+    height_order: HeightOrder | None = Field(
+        description="How far errors in flight follow 1/height, over all items of the selection."
+    )
 
 
 class PartOverview(Shape):

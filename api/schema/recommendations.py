@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from api.schema.base import Shape
+from api.schema.boards import HeightOrder
 from api.schema.flows import LeftOut, Link, Node
 
 State = Literal["meets", "misses", "unknown"]
@@ -226,6 +227,9 @@ class Recommendations(Shape):
     count: int = Field(description="Number of architectures that meet the requirements.")
     designs: int = Field(description="Number of their calibrations.")
     notes: list[str] = Field(description="How it was read; ties; benches in the way.")
+    height_order: HeightOrder | None = Field(
+        description="How far errors follow 1/height; null if nothing is asked, or of too few."
+    )
     cards: list[Card] = Field(description="Three ways to begin; empty if anything is asked.")
     architectures: list[Architecture]
     next: str | None = Field(description="Cursor of the next page; null on the last page.")

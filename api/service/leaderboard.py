@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from api.metadata.identity import identity
@@ -15,8 +16,10 @@ from api.service.documents import Document, list_document
 from api.service.knowledge import Knowledge
 from api.service.pagination import Page, narrow, order, page
 from benchmark.leaderboard.architectures import architectures as best_of_each
+from benchmark.leaderboard.architectures import order_of_heights
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.leaderboard.overview import overview as overview_of
+from registry.height_order import HeightOrder
 
 if TYPE_CHECKING:
     from benchmark.leaderboard.findings import Finding
@@ -59,7 +62,18 @@ def architectures(known: Knowledge, query: ArchitecturesQuery) -> Document:
     """
     rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
     shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
-    return list_document(shown, shown.items, columns_of(BestOfArchitecture), fields=query.fields)
+    return list_document(
+        shown,
+        shown.items,
+        columns_of(BestOfArchitecture),
+        fields=query.fields,
+        height_order=documented(order_of_heights(rows)),
+    )
+
+
+def documented(found: HeightOrder | None) -> dict[str, Any] | None:
+    """Return an order of heights as a member of a document."""
+    return None if found is None else {**asdict(found), "sentence": found.sentence}
 
 
 def overview(known: Knowledge, query: OverviewQuery) -> Document:

@@ -114,6 +114,9 @@ def notes(answer: Answer) -> Iterator[str]:
                 f"architecture{'s' * (more > 1)}; the first of them needs one of {bench:g} deg or "
                 "better."
             )
+    order = answer.height_order
+    if order is not None and order.holds:
+        yield order.sentence
     if asked.max_latency_us is not None:
         untimed = int((question.table.latency_us != question.table.latency_us).sum())
         if untimed:

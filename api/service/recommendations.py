@@ -7,6 +7,7 @@ from itertools import islice
 from typing import Any
 from urllib.parse import quote, urlencode
 
+from api.schema.boards import HeightOrder
 from api.schema.flows import LeftOut, Link, Node
 from api.schema.parameters import DEFAULT_PAGE
 from api.schema.recommendations import (
@@ -38,6 +39,7 @@ from registry import calibration as found_by
 from registry import recommendation
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import calibration_name, contradictions
+from registry.height_order import HeightOrder as FoundOrder
 from registry.measured_pipelines import Measurements
 from registry.paths import PATH_LEVELS, answer_flow
 from registry.relaxation import Explanation
@@ -140,6 +142,7 @@ def document(
         count=len(answer.architectures),
         designs=answer.design_count,
         notes=list(notes(answer)),
+        height_order=None if (found := answer.height_order) is None else _order(found),
         cards=[] if answer.is_asked else list(_cards(answer)),
         architectures=[architecture(answer, one, most) for one in shown],
         next=next_page,
@@ -273,6 +276,10 @@ def _cards(answer: Answer) -> Iterator[Card]:
 def _card(title: Any, one: RankedArchitecture, words: str) -> Card:
     detector, mask = one.place.architecture
     return Card(title=title, detector=detector, mask=mask, built=one.place.is_built, words=words)
+
+
+def _order(found: FoundOrder) -> HeightOrder:
+    return HeightOrder(**vars(found), sentence=found.sentence)
 
 
 def _reported(report: Report) -> Reported:

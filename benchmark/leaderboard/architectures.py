@@ -15,6 +15,7 @@ from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_
 from benchmark.metrics.ranking import UnitErrors, luck_of_standard
 from benchmark.metrics.score import is_available
 from benchmark.metrics.separation import store
+from registry.height_order import HeightOrder, at_reference, height_order
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -48,6 +49,8 @@ def architectures(board: Board) -> list[dict[str, Any]]:
         and its score on the standard unit (null where nothing has an error);
         ``flight_error_deg`` with ``flight_low_deg`` and ``flight_high_deg``, the same pipeline's
         error in flight and its range over units (null where it was not flown);
+        ``height_mm`` of mask or lens over the detector, and both errors scaled to a height of 1 mm,
+        ``own_at_1_mm_deg`` and ``flight_at_1_mm_deg`` (null for sensors without a height);
         ``quoted_deg``, the error on the odd units of what errs least on the even ones, data
         set and pipeline; ``others_low_deg`` and ``others_high_deg``, its smallest and
         largest error on the units other than the standard one (null where one of them gives
@@ -73,6 +76,11 @@ def architectures(board: Board) -> list[dict[str, Any]]:
     ]
 
 
+def order_of_heights(rows: Sequence[Row]) -> HeightOrder | None:
+    """Return how far errors in flight of `architectures` follow 1/height."""
+    return height_order((row["flight_error_deg"], row["height_mm"]) for row in rows)
+
+
 def first_boards(board: Board) -> Iterator[tuple[Mapping[str, Any], list[Row]]]:
     """Give each data set with the rows of its first condition."""
     for dataset in board["datasets"]:
@@ -89,11 +97,18 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     best: Row = leading[0] if leading else {}
     next_one: Row = leading[1] if len(leading) > 1 else {}
     finer = _finer(best, ranked) if best and is_available(best) else {}
+    flown = _in_flight(best, datasets)
+    height = next(
+        (one["height_mm"] for one in datasets if one["name"] == best.get("dataset")), None
+    )
     others = (best.get("unit_rms_deg") or [])[1:]
     known = bool(others) and None not in others
     return {
         **{name: best.get(name) for name in _OF_SCORE},
-        **_in_flight(best, datasets),
+        **flown,
+        "height_mm": height,
+        "own_at_1_mm_deg": _stored(at_reference(best.get("own_error_deg"), height)),
+        "flight_at_1_mm_deg": _stored(at_reference(flown["flight_error_deg"], height)),
         "studies": list(best.get("studies", ())),
         "quoted_deg": _quote(ranked),
         "others_low_deg": min(others) if known else None,
@@ -103,6 +118,10 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         **_tie(best, next_one),
         **{f"partial_{name}": finer.get(name) for name in _OF_FINER},
     }
+
+
+def _stored(error_deg: float | None) -> float | None:
+    return None if error_deg is None else store(error_deg)
 
 
 def _in_flight(best: Row, datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -63,7 +63,8 @@ def build(
         ``timed_on`` (the machine of the times, null for none), ``sweeps`` (as given) and
         ``datasets``: each with ``name``, ``version``, ``detector``,
         ``mask``, ``idealisation`` (why it stands for no built sensor, null where it does),
-        ``in_orbit`` (whether its samples are of a flight),
+        ``in_orbit`` (whether its samples are of a flight), ``height_mm`` (of mask or lens over the
+        detector, null where there is none),
         ``conditions`` (the nominal one first), what its first condition's board states once
         (``smallest_ratio`` that it tells apart, ``quoted_deg`` of its leader on units that did not
         choose it, ``references`` used, ``bench_deg`` and ``bench_aligned_deg`` that a calibration
@@ -127,6 +128,7 @@ def build(
                 "mask": listed[0]["mask"],
                 "idealisation": hardware_match(name).idealisation or None,
                 "in_orbit": _is_in_orbit(name),
+                "height_mm": get(name).geometry.focal_length_mm if name in names() else None,
                 "conditions": conditions,
                 **facts,
                 "rows": listed,

@@ -95,6 +95,7 @@ def pipelines(
                 unit_ratios=unit_ratios(units, spread.get(dataset, 0.0)),
                 bench_deg=(bench_deg or {}).get(dataset) or 0.0,
                 needs=needs[model],
+                height_mm=datasets.get(dataset).geometry.focal_length_mm,
                 flight=flight[1] if flight else None,
                 flight_units_deg=flight[0] if flight else (),
                 flight_ratios=unit_ratios(

@@ -209,3 +209,16 @@ def test_the_bench_that_a_row_says_it_needs_does_and_one_a_tenth_worse_does_not(
         assert kept[1.0], (ask, best.needs_bench_deg)
         assert not kept[1.1] or 1.1 * best.needs_bench_deg > ask["max_error_deg"], ask
     assert compared > number / 2
+
+
+def test_an_order_that_follows_the_heights_is_told_as_theirs(published: Measurements) -> None:
+    answer = recommend({"max_error_deg": 1.0}, published)
+    found = answer.height_order
+    assert found is not None
+    best = [(one.shown_deg, one.best and one.best.pipeline) for one in answer.architectures]
+    known = [(e, made.height_mm) for e, made in best if made and made.height_mm]
+    assert found.sensors == sum(np.isfinite(error) for error, _ in known)
+    assert found.sensors + found.without == len(best)
+    assert (found.sentence in notes(answer)) == found.holds
+    assert document(answer, Asked(), (), None).height_order is not None
+    assert recommend({}, published).height_order is None

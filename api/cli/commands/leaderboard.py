@@ -15,7 +15,7 @@ from api.cli.measuring import (
     ManyWorkersOption,
 )
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, line_width
+from api.cli.table_output import Format, FormatOption, emit, line_width, prose
 from api.cli.wrong_call import WrongCallError, given
 from api.schema import words
 from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
@@ -252,6 +252,8 @@ def _architectures(query: Asked, form: Format) -> None:
         record = knowledge().measurements.record
         line = f"Record: version {record['version']}, sha256 {record['sha256']}"
         typer.echo(architectures_text(rows, line_width()), nl=False)
+        if (heights := answer.document["height_order"]) and heights["sentence"]:
+            typer.echo("\n".join(prose(heights["sentence"], line_width())), err=True)
         typer.echo(line, err=True)
     else:
         emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
