@@ -45,6 +45,7 @@ COMMANDS: dict[str, str] = {
     "benchmark": "Score pipelines on the standard data sets.",
     "rank": "Check and measure an algorithm, and show its rank.",
     "leaderboard": "Show the leaderboard, update it or check it.",
+    "compare": "Compare architectures, or masks at equal height.",
     "curves": "Show how many calibration poses pipelines need.",
     "assess": "Compare the survey's scores of extractors with ours.",
     "claims": "Show claims of the survey, with verdicts.",

@@ -168,6 +168,12 @@ TABLES = (
     Table("/claims", claims.claims, of_claims.Claims | Selected, "Claims of the survey, tested"),
     Table("/claims/{id}", claims.claim, of_claims.ClaimDetail, "A claim"),
     Table("/compare", comparing.compare, of_comparison.Comparison, "Comparison"),
+    Table(
+        "/compare/equal",
+        comparing.equal_heights,
+        of_comparison.EqualHeights,
+        "Masks at equal height, detector and field",
+    ),
     Table("/search", search.search, of_search.SearchResults, "Search"),
     Table("/advice", advice.advice, of_advice.Advices | Selected, "The survey's advice"),
     Table("/protocol", advice.protocol, of_advice.Protocol, "Rules for studies and scores"),

@@ -111,6 +111,8 @@ class ComparedRow(Shape):
         description="Own error; RMS over the units measured elsewhere."
     )
     ratio_to_smallest: float | None = Field(description="Own error over the lowest compared.")
+    height_mm: float | None = Field(description="Height of mask or lens; null if there is none.")
+    own_at_1_mm_deg: float | None = Field(description="Own error scaled to a height of 1 mm.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
@@ -153,3 +155,32 @@ class Comparison(Shape):
     dataset: str | None = Field(description="Null if architectures are compared.")
     condition: str | None
     items: list[Compared]
+
+
+class MaskAtEqualHeight(Shape):
+    """A mask over the common detector: a row of the table. Numbers are null if it has none."""
+
+    design: str = Field(description="Name of the design; two may have the same mask.")
+    mask: str
+    height_mm: float = Field(description="Height of the mask over the detector.")
+    half_fov_deg: float = Field(description="Half field of view, each projection angle.")
+    units: int = Field(description="Sensor units; another one chose the pipeline.")
+    extractor: str = Field(description="Extractor; empty if there is none.")
+    model: str = Field(description="Model; empty if there is none.")
+    own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    own_low_deg: float | None = Field(description="Smallest own error of a unit.")
+    own_high_deg: float | None = Field(description="Largest own error of a unit.")
+    flight_error_deg: float | None = Field(
+        description="Error in flight: geometric mean over sensor units."
+    )
+    flight_low_deg: float | None = Field(description="Smallest error in flight of a unit.")
+    flight_high_deg: float | None = Field(description="Largest error in flight of a unit.")
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
+    reason: str = Field(description="Why there is no error; empty if there is one.")
+
+
+class EqualHeights(Shape):
+    """Masks at equal height, detector and field, by error in flight."""
+
+    detector: str = Field(description="The common detector in words.")
+    items: list[MaskAtEqualHeight]

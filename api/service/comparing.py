@@ -5,13 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api.schema.comparison import FEWEST, MOST, SEPARATOR, ComparedRow, CompareQuery
+from api.schema.comparison import (
+    FEWEST,
+    MOST,
+    SEPARATOR,
+    ComparedRow,
+    CompareQuery,
+    MaskAtEqualHeight,
+)
 from api.schema.table import columns_of
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem, Violation
+from benchmark.equal_height.record import equal_rows
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.partial_answers import PartialAnswer, better_partial_answer
+from registry.height_order import at_reference
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest_name
 
@@ -39,6 +48,8 @@ _SCORE = (
     "reason",
 )
 _CURVE = ("needed_poses", "needed_low", "needed_high", "poses", "floor_error_deg")
+#: In words: the array of `benchmark.equal_height.designs`, without loading the simulator.
+EQUAL_DETECTOR = "CMOS array of 512 x 512 pixels of 12 um, or lines of such pixels"
 _NAMED = ("dataset", "extractor", "model")
 _FINER = (*_NAMED, "own_error_deg", "availability")
 _OF_CONDITION = ("rms_all_answers_deg", "availability")
@@ -58,6 +69,21 @@ def compare(known: Knowledge, query: CompareQuery) -> Document:
         violation = Violation(error.parameter, came, error.expected, error.nearest)
         raise Problem(400, "not-comparable", errors=[violation]) from error
     return Document(document, columns_of(ComparedRow), lambda: document["items"])
+
+
+def equal_heights(known: Knowledge) -> Document:
+    """Compare masks over the same detector, at the same height, over the same field.
+
+    Each is read by the pipeline that is best on one sensor unit, and quoted on others. By error in
+    flight. `sunatlas compare --equal` measures other heights and fields.
+    """
+    return equal_document(equal_rows(known.measurements.directory))
+
+
+def equal_document(rows: Sequence[Mapping[str, Any]]) -> Document:
+    """Return rows of the comparison at equal height as a document."""
+    document = {"detector": EQUAL_DETECTOR, "items": rows}
+    return Document(document, columns_of(MaskAtEqualHeight), lambda: rows)
 
 
 def _compare(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
@@ -132,6 +158,7 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
             "detector": detector,
             "mask": mask,
             **nothing,
+            "height_mm": None,
             "studies": [],
             "status": "none",
             "reason": without,
@@ -189,6 +216,7 @@ def _item(
     return {
         **{name: any_row[name] for name in ("detector", "mask")},
         **{name: row[name] for name in _SCORE},
+        "height_mm": known.measurements.presets[row["dataset"]].geometry.focal_length_mm,
         **{name: curve.get(name) for name in _CURVE},
         "conditions": {
             name: {**{what: scored[what] for what in _OF_CONDITION}, "partial_answer": None}
@@ -216,6 +244,7 @@ def _with_ratio(items: list[dict[str, Any]]) -> list[dict[str, Any]]:
     for item in items:
         error = item["own_error_deg"]
         item["ratio_to_smallest"] = error / least if least and error is not None else None
+        item["own_at_1_mm_deg"] = at_reference(error, item["height_mm"])
         item.setdefault("proposed", None)
     return items
 

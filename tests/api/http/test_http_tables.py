@@ -11,7 +11,7 @@ from api.schema.algorithms import Algorithm
 from api.schema.assessment import Sweep, VerdictRow
 from api.schema.boards import BestOfArchitecture, PartOverview
 from api.schema.claims import CheckedRule, ClaimRow
-from api.schema.comparison import ComparedRow
+from api.schema.comparison import ComparedRow, MaskAtEqualHeight
 from api.schema.curves import CurveRow
 from api.schema.datasets import BuiltSensorRow, Data, Dataset
 from api.schema.figures import ArcRow, FlowRow, ListedFigure, PairRow, PublicationRow, SensorRow
@@ -69,6 +69,7 @@ MODELS = {
     "/v1/search?q=centroid": Found,
     "/v1/search?q=zzzzzzzz": Found,
     "/v1/compare?architecture=CMOS:Encoded&architecture=PD:Slit": ComparedRow,
+    "/v1/compare/equal": MaskAtEqualHeight,
     "/v1/advice": Advice,
     "/v1/protocol": Statement,
 }
@@ -112,7 +113,7 @@ def test_every_table_of_the_service_is_among_them(atlas):
             here = template.split("{")[0].rstrip("/")
             assert any(url.partition("?")[0].startswith(here) for url in TABLES), template
             listed += 1
-    assert listed == 31
+    assert listed == 32
 
 
 @pytest.mark.parametrize("url", [url for url, left in LISTS.items() if left is not None])

@@ -1,0 +1,71 @@
+"""`sunatlas compare`: architectures side by side, and masks at equal height."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli.command_line import app
+from benchmark.datasets import get
+from benchmark.equal_height.designs import DESIGNS
+
+
+def sunatlas(*arguments):
+    return CliRunner().invoke(app, ["compare", *map(str, arguments)])
+
+
+def test_architectures_have_their_height_and_their_error_at_1_mm():
+    named = ("--architecture", "CCD:Lens", "--architecture", "PD:Maskless")
+    shown = sunatlas(*named, "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    lens, bare = json.loads(shown.stdout)["items"]
+    assert lens["height_mm"] == get("ccd-lens").geometry.focal_length_mm == 3.0
+    assert lens["own_at_1_mm_deg"] == pytest.approx(3.0 * lens["own_error_deg"])
+    assert bare["height_mm"] is None
+    assert bare["own_at_1_mm_deg"] is None
+
+
+def test_every_mask_at_equal_height_is_shown_by_its_error_in_flight():
+    shown = sunatlas("--equal", "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    document = json.loads(shown.stdout)
+    rows = document["items"]
+    assert {row["design"] for row in rows} == set(DESIGNS)
+    assert {(row["height_mm"], row["half_fov_deg"], row["units"]) for row in rows} == {(0.5, 60, 9)}
+    errors = [row["flight_error_deg"] for row in rows]
+    assert errors == sorted(errors)
+    for row in rows:
+        assert row["bound_deg"] < row["own_error_deg"] < row["flight_error_deg"]
+        assert DESIGNS[row["design"]].mask == row["mask"]
+    assert "512 x 512 pixels of 12 um" in document["detector"]
+    said = " ".join(sunatlas("--equal").stdout.split())
+    assert "height 0.5 mm, field 120 deg, 9 units" in said
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--height", "1"), "need --equal"),
+        (("--equal", "--architecture", "CCD:Lens"), "takes no architectures"),
+        (("--equal", "--height", "9"), "light would leave the array"),
+        (("--equal", "--field", "180"), "expected a height above 0 mm"),
+    ],
+)
+def test_calls_that_cannot_be_answered_are_refused_in_words(options, said):
+    shown = sunatlas(*options)
+    assert shown.exit_code != 0
+    assert said in f"{shown.stderr} {shown.exception}"
+
+
+@pytest.mark.slow
+def test_another_height_is_measured_and_what_does_not_fit_is_named():
+    shown = sunatlas("--equal", "--height", "1.2", "--units", "1", "--format", "json")
+    rows = {row["design"]: row for row in json.loads(shown.stdout)["items"]}
+    assert "light would leave the array" in rows["n-slit"]["reason"]
+    published = {
+        row["design"]: row
+        for row in json.loads(sunatlas("--equal", "--format", "json").stdout)["items"]
+    }
+    # a spot moves by 1.2/0.5 times as much
+    ratio = published["multi-slit"]["own_error_deg"] / rows["multi-slit"]["own_error_deg"]
+    assert ratio == pytest.approx(1.2 / 0.5, rel=0.5)
