@@ -1,0 +1,1 @@
+"""Built sensors simulated as they are sold: their calibration, bench, statistic and field."""
