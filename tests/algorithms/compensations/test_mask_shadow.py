@@ -75,8 +75,3 @@ def test_counted_from_the_lower_face_the_mask_must_be_compensated(theta, phi):
     mask = MaskShadow(h, pitch, 0.1, 0.3, (250.0, 240.0)).fit(spot, sun[None])
     assert separation_deg(alone.predict(mask.transform(spot)), sun[None])[0] < 0.005
     assert separation_deg(alone.predict(spot), sun[None])[0] > 0.5
-
-
-def test_a_drawn_distance_that_cannot_be_is_named():
-    with pytest.raises(ValueError, match="drawn_mm"):
-        MaskShadow(1.0, 1.0, 0.1, 0.3, drawn_mm=-1.0)

@@ -53,20 +53,6 @@ def test_glass_that_fills_the_distance_ends_where_rays_end():
     assert found[1, 0] == pytest.approx(np.tan(inside), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        ({"layers": ((0.0, 1.5),)}, "layers"),
-        ({"layers": ((0.1, 0.9),)}, "layers"),
-        ({"layers": ((3.0, 1.5),)}, "fit into focal_length_mm"),
-        ({"focal_length_mm": 0.0}, "focal_length_mm"),
-    ],
-)
-def test_plates_that_cannot_be_are_named(wrong, named):
-    with pytest.raises(ValueError, match=named):
-        Refraction(**{"focal_length_mm": 2.0, "unit_mm": 0.01, **wrong})
-
-
 def test_optical_and_polynomial_is_one_chain(geometry, field):
     """You2011: compensation, then a polynomial for what is left, here a turn in the plane."""
     layers = ((0.7, 1.5),)

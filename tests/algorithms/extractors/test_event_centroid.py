@@ -189,16 +189,3 @@ def test_other_designs_are_refused(change, said):
     for method in (EventCentroid, EventWinner):
         with pytest.raises(ValueError, match=said):
             method.for_sensor(replace(L_SLIT, **change))
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [{"width_px": 0.0}, {"layout": "cross"}, {"margin_px": -1.0}, {"hot": 1.0}],
-)
-def test_parameters_out_of_range_are_named(wrong):
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        EventCentroid(**{"width_px": 3.0, **wrong})
-    with pytest.raises(ValueError, match="winners"):
-        EventWinner(winners=0)
-    with pytest.raises(ValueError, match="offset_px"):
-        EventWinner(offset_px=float("inf"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,55 +12,8 @@ from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleC
 from algorithms.extractors.frames.multi_spot.spot_list import SpotList
 from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
 from algorithms.extractors.profiles.centroid import ProfileCentroid
-from algorithms.extractors.profiles.direct_readings import DirectProfile, ThresholdProfile
-from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
-from algorithms.extractors.profiles.linear_phase import FrameLinearPhase, LinearPhase
 
 HOLE = ((0.0, 0.0, 5.0),)
-LINES: dict[str, Any] = {
-    "line_axes": ("x", "y"),
-    "line_pixels": 64,
-    "slits": ((0.0, 0.0, 6.0),),
-    "reach_px": 20.0,
-    "margin_px": 3.0,
-}
-PIXELS: dict[str, Any] = {"line_axes": ("x",), "line_pixels": 64}
-LIST: dict[str, Any] = {"apertures_px": HOLE, "spots": 3}
-MASK: dict[str, Any] = {"apertures_px": HOLE}
-AXES = "line_axes must be 'x' or 'y', one a line; got"
-FREQUENCIES = "frequencies must be None or at least 1; got"
-ROWS = "apertures_px must be rows of finite x, y, width; got"
-FIELD = "field_px must be None or finite x, y and a positive reach; got"
-
-
-@pytest.mark.parametrize(
-    ("method", "given", "wrong", "said"),
-    [
-        (ProfileCentroid, LINES, {"line_axes": ()}, rf"{AXES} \(\)"),
-        (ProfileCentroid, LINES, {"line_axes": ("x", "z")}, rf"{AXES} \('x', 'z'\)"),
-        (ProfileCentroid, LINES, {"slits": ()}, r"slits must not be empty; got \(\)"),
-        (DirectProfile, PIXELS, {"line_axes": ()}, rf"{AXES} \(\)"),
-        (DirectProfile, PIXELS, {"line_axes": ("u",)}, rf"{AXES} \('u',\)"),
-        (ThresholdProfile, PIXELS, {"line_axes": ("x", "")}, rf"{AXES} \('x', ''\)"),
-        (LinearPhase, LINES, {"frequencies": 0}, f"{FREQUENCIES} 0"),
-        (EigenAnalysis, LINES, {"frequencies": -1}, f"{FREQUENCIES} -1"),
-        (FrameLinearPhase, {"width_px": 8.0}, {"frequencies": 0}, f"{FREQUENCIES} 0"),
-        (SpotList, LIST, {"apertures_px": ()}, rf"{ROWS} \[\]"),
-        (SpotList, LIST, {"apertures_px": ((0.0, 0.0),)}, ROWS),
-        (SpotList, LIST, {"apertures_px": ((0.0, 0.0, math.nan),)}, f"{ROWS} .*nan"),
-        (SpotList, LIST, {"blur_px": -0.1}, "blur_px must be finite, not negative; got -0.1"),
-        (SpotList, LIST, {"blur_px": math.inf}, "blur_px must be finite, not negative; got inf"),
-        (MultipleCentroids, MASK, {"field_px": (9.0, 8.0, 0.0)}, rf"{FIELD} \(9.0, 8.0, 0.0\)"),
-        (MultipleCentroids, MASK, {"field_px": (math.nan, 8.0, 1.0)}, rf"{FIELD} \(nan"),
-        (MultipleCentroids, MASK, {"field_px": (9.0, 8.0)}, rf"{FIELD} \(9.0, 8.0\)"),
-    ],
-)
-def test_a_parameter_that_cannot_be_is_named(
-    method: Any, given: dict[str, Any], wrong: dict[str, Any], said: str
-) -> None:
-    assert method(**given).about.name
-    with pytest.raises(ValueError, match=f"{method.about.name}: {said}"):
-        method(**{**given, **wrong})
 
 
 @pytest.mark.parametrize(

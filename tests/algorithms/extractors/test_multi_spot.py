@@ -276,26 +276,3 @@ def test_designs_without_images_of_apertures_are_refused(method, wrong, reason):
     }
     with pytest.raises(ValueError, match=reason):
         method.for_sensor(SensorGeometry(**(design | wrong)))
-
-
-@pytest.mark.parametrize(
-    ("method", "wrong"),
-    [
-        (MultipleCentroids, {"apertures_px": ()}),
-        (MultipleCentroids, {"apertures_px": ((0.0, 0.0, 0.0),)}),
-        (MultipleCentroids, {"apertures_px": ((0.0, float("nan"), 3.0),)}),
-        (MultipleCentroids, {"blur_px": -1.0}),
-        (MultipleCentroids, {"threshold": 1.0}),
-        (MultipleCentroids, {"tolerance_px": 6.0}),
-        (MeanShift, {"bandwidth_px": 0.0}),
-        (MeanShift, {"bandwidth_px": 9.0, "bins": 2}),
-        (MeanShift, {"bandwidth_px": 9.0, "similarity": 1.0}),
-        (MeanShift, {"bandwidth_px": 9.0, "convergence_px": 0.0}),
-        (ImageCorrelation, {"shape": "oval"}),
-        (ImageCorrelation, {"correlations": 5}),
-        (ImageCorrelation, {"presence": 0.0}),
-    ],
-)
-def test_parameters_out_of_range_are_named(method, wrong):
-    with pytest.raises(ValueError, match=list(wrong)[-1]):
-        method(**({"apertures_px": GRID} | wrong))

@@ -252,27 +252,3 @@ def test_many_spots_are_refused():
     holes = SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)))
     with pytest.raises(ValueError, match="one spot"):
         FramePeakPositionEstimate.for_sensor(holes)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"image": "moffat"},
-        {"coefficients": (0.0, 0.0, 1.0, 1.0, -3.0, 1.0)},
-        {"coefficients": (0.0, 0.0, 1.0, 1.0, 0.0, 0.0)},
-        {"coefficients": (0.0, 1.0)},
-        {"tolerance": 0.0},
-        {"iterations": 0},
-    ],
-)
-def test_parameters_out_of_range_are_named(wrong):
-    for make in (FramePeakPositionEstimate, lambda **given: replace(CROSSED, **given)):
-        with pytest.raises(ValueError, match=next(iter(wrong))):
-            make(**wrong)
-
-
-def test_an_overlap_or_width_out_of_range_is_named():
-    with pytest.raises(ValueError, match="overlap"):
-        replace(CROSSED, overlap=-1.0)
-    with pytest.raises(ValueError, match="width_px"):
-        FramePeakPositionEstimate(width_px=0.0)

@@ -72,19 +72,3 @@ def test_rows_without_positive_light_are_nan():
     assert np.isnan(by_sum[:, 0]).tolist() == [True, True, True, False]
     plain = DirectSignals(elements=4).extract(readings)
     assert np.isnan(plain[:, 0]).tolist() == [True, False, True, False]
-
-
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        (lambda: VoltageBalance(order=(0, 1, 2, 2)), "order"),
-        (lambda: VoltageBalance(dark=(0.0, 1.0)), "dark"),
-        (lambda: VoltageBalance(gain=0.0), "gain"),
-        (lambda: DirectSignals(elements=0), "elements"),
-        (lambda: DirectSignals(gain=(1.0, float("nan"), 1, 1, 1, 1)), "gain"),
-        (lambda: DirectSignals(normalisation="median"), "normalisation"),
-    ],
-)
-def test_parameters_out_of_range_are_named(wrong, named):
-    with pytest.raises(ValueError, match=named):
-        wrong()

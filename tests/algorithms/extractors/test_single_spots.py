@@ -289,22 +289,3 @@ def test_a_frame_of_noise_alone_is_never_a_result_outside_it(extractor):
     found = extractor.extract(frames)
     inside = (found > -0.5) & (found < [33.5, 29.5])
     assert (inside | np.isnan(found)).all()
-
-
-@pytest.mark.parametrize(
-    ("method", "wrong"),
-    [
-        (MultipleThresholdCentroid, {"accuracy_px": 0.0}),
-        (MultipleThresholdCentroid, {"accuracy_px": float("nan")}),
-        (MultipleThresholdCentroid, {"lowest": 0.95}),
-        (MultipleThresholdCentroid, {"crossing": "cubic"}),
-        (TemplateMatch, {"width_px": 0.0}),
-        (TemplateMatch, {"width_px": 3.0, "shape": "oval"}),
-        (TemplateMatch, {"width_px": 3.0, "threshold": 1.0}),
-        (GaussianFit, {"tolerance_px": -1.0}),
-        (GaussianFit, {"iterations": 0}),
-    ],
-)
-def test_parameters_out_of_range_are_named(method, wrong):
-    with pytest.raises(ValueError, match=list(wrong)[-1]):
-        method(**wrong)

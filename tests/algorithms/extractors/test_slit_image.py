@@ -138,19 +138,3 @@ def test_slits_of_one_slant_that_differ_in_width_are_refused() -> None:
     slits = ((-0.5, 0.0, 0.2), (0.5, 0.0, 0.15))  # one image cannot stand for both
     with pytest.raises(UnsuitableDesignError, match="equally wide"):
         SlitImage.for_sensor(SensorGeometry(**{**vars(DRAWN), "slits": slits}))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ({"height_px": 0.0}, "height_px"),
-        ({"pixel_mm": -1.0}, "pixel_mm"),
-        ({"mask_px": -0.1}, "mask_px must not be negative"),
-        ({"glass": ((90.0, 1.5),)}, "fit under the mask"),
-        ({"glass": ((1.0, 0.9),)}, "index of at least 1"),
-    ],
-)
-def test_wrong_parameters_are_named(wrong: dict[str, object], message: str) -> None:
-    given = {"height_px": 50.0, "pixel_mm": 0.05, **wrong}
-    with pytest.raises(ValueError, match=message):
-        SlitImage(("x", "y"), 80, ((0.0, 0.0, 6.0),), 20.0, 2.0, **given)  # type: ignore[arg-type]

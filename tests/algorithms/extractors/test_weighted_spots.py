@@ -142,8 +142,6 @@ def test_designs_without_images_of_apertures_are_refused():
     )
     with pytest.raises(ValueError, match="diffraction"):
         WeightedSpots.for_sensor(design)
-    with pytest.raises(ValueError, match="faulty_lines"):
-        WeightedSpots(grid(2, 16.0), faulty_lines=-1)
 
 
 def strangers(rng, apertures, frames, places):

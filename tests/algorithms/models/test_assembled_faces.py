@@ -185,15 +185,6 @@ def test_faces_that_are_not_lit_are_named():
         AssembledFaces(CUBE).fit(signals, sun)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [({"level_spread": 0.0}, "level_spread"), ({"response": "none"}, "response")],
-)
-def test_parameters_out_of_range_are_named(wrong, named):
-    with pytest.raises(ValueError, match=named):
-        AssembledFaces(CUBE, **wrong)
-
-
 @pytest.mark.slow
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=3, deadline=None)

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from algorithms.angles import separation_deg, sun_from_angles, sun_from_tangents
 from algorithms.contract import FeatureKind, SensorGeometry
-from algorithms.extractors.currents.dial_tracks import DialTracks
 from algorithms.models.multiplex.periodic import PeriodicCode
 from algorithms.models.non_physical.fourier_phase import FourierPhase
 
@@ -239,37 +238,4 @@ def test_samples_that_do_not_settle_the_fit_are_refused(model):
         model.for_sensor(DESIGN, FeatureKind.SIGNALS).fit(signals, -sun_of(tangents))
 
 
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        ({"bits": 0}, "bits"),
-        ({"cell_mm": 0.64}, "cell_mm must be below period_mm"),
-        ({"period_mm": float("nan")}, "period_mm"),
-        ({"focal_length_mm": 0.0}, "focal_length_mm"),
-        ({"axes": ("x",)}, "axes"),
-        ({"axes": ("x", "x")}, "axes"),
-        ({"smallest_contrast": 1.0}, "smallest_contrast"),
-    ],
-)
-def test_parameters_out_of_range_are_named(model, wrong, named):
-    with pytest.raises(ValueError, match=named):
-        fitted(model, **wrong)
-
-
 # The extractor
-
-
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        ({"bits": 0}, "bits"),
-        ({"axes": ("x", "x")}, "axes"),
-        ({"axes": ()}, "axes"),
-        ({"axes": ("u",)}, "axes"),
-        ({"gain": (1.0, 2.0)}, "gain"),
-    ],
-)
-def test_extractor_parameters_out_of_range_are_named(wrong, named):
-    with pytest.raises(ValueError, match=named):
-        DialTracks(**wrong)

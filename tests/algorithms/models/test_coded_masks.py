@@ -325,24 +325,6 @@ def test_a_mask_that_is_seen_whole_needs_no_code():
         CodedSpacing.for_sensor(small, FeatureKind.SPOTS)
 
 
-@pytest.mark.parametrize(
-    ("change", "expected"),
-    [
-        ({"spots": 2}, "spots"),
-        ({"agreeing": 2}, "agreeing"),
-        ({"share": 0.0}, "share"),
-        ({"odds": 0.5}, "odds"),
-        ({"tolerance_px": -1.0}, "tolerance_px"),
-        ({"size_tolerance": 0.0}, "size_tolerance"),
-        ({"layers": ((0.1, 0.9),)}, "layers"),
-        ({"apertures_px": ((0.0, 0.0, 5.0),)}, "apertures_px"),
-    ],
-)
-def test_parameters_out_of_range_are_named(change, expected):
-    with pytest.raises(ValueError, match=expected):
-        model_of(CodedSpacing, **change)
-
-
 def test_a_list_with_a_gap_is_refused():
     model = model_of(CodedSpacing)
     rows = lists(places_px(), cast(field(1)), model.spots)

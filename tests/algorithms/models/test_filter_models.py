@@ -14,13 +14,10 @@ from algorithms.discovery import discover_models
 from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
 from algorithms.models.filters import (
-    AdaptiveKalmanFilter,
     AssemblyDriftFilter,
     ConsiderKalmanFilter,
     ExtendedKalmanFilter,
-    MultipleModelEstimation,
     RobustKalmanFilter,
-    UnscentedKalmanFilter,
 )
 
 CUBE = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1.0)])
@@ -95,26 +92,6 @@ def test_correlated_residuals_count_as_fewer() -> None:
     steps = correlated_steps(noise)
     assert steps[0] == pytest.approx(1.0, abs=0.05)
     assert steps[1] == pytest.approx(9.0, rel=0.15)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        (lambda: ExtendedKalmanFilter(worst_deg=0.0), "worst_deg"),
-        (lambda: ExtendedKalmanFilter(bias_deg_h=-1.0), "bias_deg_h"),
-        (lambda: ExtendedKalmanFilter(face_normals=((1.0, 0.0, 0.0),) * 3), "normals"),
-        (lambda: UnscentedKalmanFilter(kappa=-0.5), "kappa"),
-        (lambda: AdaptiveKalmanFilter(window=1.0), "window"),
-        (lambda: RobustKalmanFilter(limit=0.0), "limit"),
-        (lambda: MultipleModelEstimation(noise_scales=()), "noise_scales"),
-        (lambda: MultipleModelEstimation(noise_scales=(1.0, -1.0)), "noise_scales"),
-        (lambda: AssemblyDriftFilter(gain_deviation=0.0), "gain_deviation"),
-        (lambda: ConsiderKalmanFilter(albedo_deviation=0.0), "albedo_deviation"),
-    ],
-)
-def test_wrong_parameters_are_refused_by_name(wrong, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        wrong()
 
 
 def test_signals_without_faces_are_refused(geometry) -> None:

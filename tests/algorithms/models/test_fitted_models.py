@@ -254,20 +254,3 @@ def test_what_blended_polynomials_accept_does_not_hang_on_the_order_of_sums():
     found = rows.fit(features, sun_from_angles(angles)).predict(features)
     turned = rows.fit(features[::-1], sun_from_angles(angles)[::-1]).predict(features)
     np.testing.assert_allclose(turned, found, rtol=0, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        (lambda: LinearFit(target="sine"), "target"),
-        (lambda: AxisPolynomial(degree=0), "degree"),
-        (lambda: SurfacePolynomial(degree=16), "degree"),
-        (lambda: AxisPolynomial(extrapolation=-0.1), "extrapolation"),
-        (lambda: ErrorTable(1.0, 1.0, interval_deg=0.0), "interval_deg"),
-        (lambda: ErrorTable(1.0, 1.0, smoothing=float("nan")), "smoothing"),
-        (lambda: BlendedPolynomials(1.0, 1.0, degree=0), "degree"),
-    ],
-)
-def test_parameters_out_of_range_are_named(wrong, named):
-    with pytest.raises(ValueError, match=named):
-        wrong()

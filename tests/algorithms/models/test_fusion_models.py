@@ -298,33 +298,3 @@ def test_solar_panels_follow_the_corrected_equation():
     np.testing.assert_allclose(model.predict(signals[None]), [expected], atol=1e-15)
     dark = np.array([[0.0] * 6, [-0.1] * 6, [0.2, 0.2, 0.0, 0.0, 0.0, 0.0]])
     assert np.isnan(model.predict(dark)).all()
-
-
-@pytest.mark.parametrize(
-    "faces",
-    [
-        FACES[:5],
-        (*FACES[:5], FACES[4]),
-        (*FACES[:5], (0.0, 0.6, -0.8)),
-        as_design(survey_pyramid(6, 30.0)),
-        ((1, 0),) * 6,
-        (),
-    ],
-)
-def test_solar_panels_refuse_another_body(faces):
-    with pytest.raises(ValueError, match="six panel normals"):
-        SolarPanels(faces)
-
-
-@pytest.mark.parametrize(
-    ("model", "wrong"),
-    [
-        (RegularPyramid, {"coefficient": "some"}),
-        (RegularPyramid, {"dark_fraction": 1.0}),
-        (WeightedCells, {"weighting": "none"}),
-        (WeightedCells, {"largest_incidence_deg": 90.0}),
-    ],
-)
-def test_parameters_out_of_range_are_named(model, wrong):
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        model(as_design(survey_pyramid(6, 30.0)), **wrong)

@@ -189,29 +189,6 @@ def test_basic_takes_the_brighter_face_of_a_pair_and_its_side():
     np.testing.assert_allclose(noisy, [[0.0, 0.0, 1.0]], atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    "faces",
-    [FACES[:5], (*FACES[:5], FACES[0]), (*FACES[:5], (0.0, 0.6, -0.8)), ((1, 0),) * 6, ()],
-)
-def test_basic_refuses_faces_that_are_no_cube(faces):
-    with pytest.raises(ValueError, match="six face normals"):
-        SixFaces(faces)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "named"),
-    [
-        ({"focal_length_mm": 0.0, "unit_mm": 1.0}, "focal_length_mm"),
-        ({"focal_length_mm": 1.0, "unit_mm": float("inf")}, "unit_mm"),
-        ({"focal_length_mm": 1.0, "unit_mm": 1.0, "centre": (0.0, float("nan"))}, "centre"),
-    ],
-)
-@pytest.mark.parametrize("model", [StandardProjection, LeastSquaresGeometry])
-def test_parameters_out_of_range_are_named(model, wrong, named):
-    with pytest.raises(ValueError, match=named):
-        model(**wrong)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("of_features", [0.0, 0.05], ids=["turntable", "pixels"])
 @pytest.mark.parametrize("make", [LeastSquaresGeometry, BuiltPinhole])

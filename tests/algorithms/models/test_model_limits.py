@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,51 +12,9 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
-from algorithms.models.geometric.least_squares import LeastSquaresGeometry
 from algorithms.models.geometric.panoramic import WeightedCells
 from algorithms.models.geometric.pyramidal import RegularPyramid
-from algorithms.models.geometric.standard_projection import StandardProjection
-from algorithms.models.lut.blended_polynomials import BlendedPolynomials
-from algorithms.models.lut.lookup_table import ErrorTable
 from algorithms.models.multiplex.dial_code import DialCode
-from algorithms.models.multiplex.periodic import PeriodicCode
-from algorithms.models.non_physical.fourier_phase import FourierPhase
-from algorithms.models.non_physical.polynomial import AxisPolynomial, SurfacePolynomial
-
-TABLE: dict[str, Any] = {"focal_length_mm": 2.0, "unit_mm": 0.5}
-DIAL: dict[str, Any] = {"bits": 5, "cell_mm": 0.3, "period_mm": 0.6, "focal_length_mm": 2.5}
-PLANAR = (StandardProjection, LeastSquaresGeometry, ErrorTable, BlendedPolynomials)
-FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
-
-
-# Parameters
-
-
-@pytest.mark.parametrize(
-    ("model", "given", "name", "inside", "outside"),
-    [
-        (BlendedPolynomials, TABLE, "degree", (1, 15), (0, 16)),
-        (AxisPolynomial, {}, "degree", (1, 15), (0, 16)),
-        (SurfacePolynomial, {}, "degree", (1, 15), (0, 16)),
-        (AxisPolynomial, {}, "extrapolation", (0.0, math.inf), (-1e-9, math.nan)),
-        (SurfacePolynomial, {}, "extrapolation", (0.0, math.inf), (-1e-9, math.nan)),
-        (FourierPhase, DIAL, "harmonics", (1, 16), (0, 17)),
-        *((model, DIAL, "bits", (1, 16), (0, 17)) for model in (PeriodicCode, FourierPhase)),
-        (PeriodicCode, DIAL, "smallest_contrast", (0.0, 0.999), (-0.001, 1.0)),
-        (PeriodicCode, DIAL, "cell_mm", (1e-9, 0.599), (0.0, 0.6, 0.7)),
-        (WeightedCells, {"face_normals": FACES}, "largest_incidence_deg", (1e-9, 89.9), (0, 90)),
-        *((model, TABLE, "interval_deg", (1e-9, 90.0), (0.0, -1.0)) for model in PLANAR[2:]),
-        *((model, TABLE, "unit_mm", (1e-9, 1e9), (0.0, -1.0, math.inf)) for model in PLANAR),
-    ],
-)
-def test_a_parameter_may_have_the_ends_of_its_range_and_nothing_beyond(
-    model: Any, given: dict[str, Any], name: str, inside: Any, outside: Any
-) -> None:
-    for value in inside:
-        assert getattr(model(**{**given, name: value}), name) == value
-    for value in outside:
-        with pytest.raises(ValueError, match=name):
-            model(**{**given, name: value})
 
 
 def pyramid(tilt_deg: float, count: int = 4) -> tuple[tuple[float, float, float], ...]:

@@ -316,12 +316,6 @@ def test_pairs_refuse_a_height_that_cannot_be_and_say_which(wrong):
         DeflectedSlitPairs.for_sensor(geometry, FeatureKind.BALANCE)
 
 
-@pytest.mark.parametrize("glass", [((0.5, 0.9),), ((0.0, 1.5),), ((1.0, 1.5), (0.9, 1.5))])
-def test_glass_that_cannot_be_is_refused(glass):
-    with pytest.raises(ValueError, match="cover_glass"):
-        VSlit(focal_length_mm=1.8, slits=V, cover_glass=glass, **ONE_LINE)
-
-
 def test_a_fold_has_no_direction():
     """Where the features run back, two directions cast the same ones; the far one is not found."""
 

@@ -144,12 +144,6 @@ def test_noise_two_spots_a_hot_pixel_and_a_cut_spot_are_not_found():
         assert np.isnan(FILTER.extract(frame)).all()
 
 
-@pytest.mark.parametrize("wrong", [{"significance": 0.0}, {"fraction": 1.0}, {"memory": 0}])
-def test_parameters_out_of_range_are_named(wrong):
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        AdaptiveEnergyFilter(**wrong)
-
-
 def test_many_spots_are_refused():
     with pytest.raises(ValueError, match="apertures"):
         AdaptiveEnergyFilter.for_sensor(

@@ -118,13 +118,6 @@ def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
     assert np.isnan(GaussianFit().extract(frames)).all()
 
 
-def test_parameters_that_are_none_are_refused():
-    with pytest.raises(ValueError, match=r"gaussian-fit.*'all'"):
-        GaussianFit(light="all")
-    with pytest.raises(ValueError, match="gaussian-fit: longest_px must be positive"):
-        GaussianFit(longest_px=-1.0)
-
-
 def gaussians(count, rng):
     """Frames of Gaussian spots, and where they are."""
     rows, columns = np.mgrid[:SIZE, :SIZE]
