@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,18 +91,3 @@ def test_conditions_with_and_without_clouds_differ_in_them_alone() -> None:
     # clouds come twice to an Earth's disc: ground of half to 1.25 of the mean
     assert 0.5 - 1e-9 <= ratio.min() < 0.8
     assert 1.1 < ratio.max() <= 0.374 / 0.3 + 0.001
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"cover": 1.0}, r"cover.*\(0.*1\).*1.0"),
-        ({"clear": 1.5}, r"clear.*\[0.*1\].*1.5"),
-        ({"waves": 0}, "waves.*1.*0"),
-        ({"shortest_km": 9000.0}, "longest_km.*9000.0.*6000.0"),
-        ({"softness": 0.0}, "softness must be positive; got 0.0"),
-    ],
-)
-def test_what_are_no_clouds_is_refused(changes: dict[str, float], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        replace(Clouds(), **changes)

@@ -213,16 +213,3 @@ def test_missing_and_dirty_apertures_are_exactly_as_many_as_told() -> None:
     assert dirty.max() <= 0.8
     _, more = MaskErrors(missing=0.4).built(mask, "unit")
     assert set(np.flatnonzero(some == 0)) < set(np.flatnonzero(more == 0))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ({"position_mm": -1.0}, "must not be negative"),
-        ({"missing": 0.7, "dirty": 0.4}, "together at most 1"),
-        ({"dirty_transmission": (0.8, 0.2)}, "two increasing numbers"),
-    ],
-)
-def test_impossible_errors_are_refused(wrong: dict, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        MaskErrors(**wrong)

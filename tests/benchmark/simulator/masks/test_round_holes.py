@@ -194,12 +194,6 @@ def test_a_spiral_has_the_low_moments_of_the_disc(count: int, darkening: float) 
     assert np.hypot(x, y).max() < 1
 
 
-@pytest.mark.parametrize("wrong", [-4, 3, 30])
-def test_a_spiral_has_sets_of_four(wrong: int) -> None:
-    with pytest.raises(ValueError, match=r"spiral.*0"):
-        SolarDisc(spiral=wrong)
-
-
 @njit
 def count_rays(size, hole, paths, weights, rng):
     """Share of randomly jittered rays through both rims of one round hole, by pixel."""

@@ -13,7 +13,6 @@ from scipy.special import j1
 from benchmark.simulator.kernels import slit_integrals
 from benchmark.simulator.optics.diffraction import (
     SUNLIT_SILICON,
-    Spectrum,
     round_intensity,
 )
 from benchmark.simulator.optics.diffraction_tables import fresnel_table
@@ -106,20 +105,6 @@ def test_weights_are_sunlight_on_silicon() -> None:
     photons = micrometres**-4.0 / np.expm1(14387.769 / (micrometres * 5772.0))
     expected = efficiency * photons / np.sum(efficiency * photons)
     assert SUNLIT_SILICON.weights == pytest.approx(expected, abs=5.1e-4)
-
-
-@pytest.mark.parametrize(
-    ("wavelengths", "weights", "said"),
-    [
-        ((), (), "one weight a wavelength"),
-        ((500.0,), (0.5, 0.5), "got 1 wavelengths and 2 weights"),
-        ((500.0, 600.0), (0.5, 0.4), "add up to 1; got 0.9"),
-        ((-500.0,), (1.0,), "positive"),
-    ],
-)
-def test_impossible_spectra_are_refused(wavelengths, weights, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        Spectrum(wavelengths, weights)
 
 
 @pytest.mark.parametrize("position", [-1.6, -0.3, 0.8, 1.4])

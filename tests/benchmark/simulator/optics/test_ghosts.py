@@ -123,12 +123,3 @@ def test_a_cover_glass_repeats_what_falls_through_it() -> None:
     passed = sensor.camera.glass.transmission(sun)[0]
     expected = 0.02 * passed * sun[0, 2] * math.pi * 0.05**2 / pitch**2
     assert light == pytest.approx(expected, rel=1e-9)
-
-
-def test_what_is_no_mirror_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"detector_reflectance.*\[0.*1\].*1.5"):
-        Ghost(1.5)
-    with pytest.raises(ValueError, match=r"surface_reflectance.*\[0.*1\].*-0.1"):
-        Ghost(0.3, -0.1)
-    with pytest.raises(ValueError, match="'mask' or 'glass'; got 'lens'"):
-        Ghost(surface="lens")  # type: ignore[arg-type]

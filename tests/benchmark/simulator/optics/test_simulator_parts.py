@@ -12,7 +12,6 @@ from scipy import integrate, stats
 
 from benchmark.seeds import generator, seed_sequence
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles, tangent_axes
-from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.readout.detectors import (
@@ -126,23 +125,3 @@ def test_streams_are_told_apart_by_every_name_and_its_place() -> None:
     assert generator("a", 1).random() == generator("a", 1).random()
     with pytest.raises(ValueError, match="at least one name"):
         seed_sequence()
-
-
-@pytest.mark.parametrize(
-    ("make", "said"),
-    [
-        (lambda: Aperture("round", 0.1, 0.2), "one diameter"),
-        (lambda: Aperture("oval", 0.1, 0.2), "'round' or 'rectangle'"),
-        (lambda: Aperture("round", 0.0, 0.0), "positive"),
-        (lambda: Mask(()), "at least one aperture"),
-        (lambda: Mask((Aperture("round", 1, 1),), -0.1), "thickness_mm"),
-        (lambda: Plate(0.0, 1.5), "thickness_mm"),
-        (lambda: Plate(0.1, 0.9), "index"),
-        (lambda: SolarDisc(diameter_deg=-1), "diameter_deg"),
-        (lambda: SolarDisc(rings=(5,)), "multiples of four"),
-        (lambda: Quadrants(1.0, 3.0), "gap_mm"),
-    ],
-)
-def test_impossible_parts_are_refused(make, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        make()

@@ -82,16 +82,3 @@ def test_what_is_read_inverts_and_rises(nonlinearity: float, share: float) -> No
     rise = (errors.read(held + step, FULL_E) - errors.read(held - step, FULL_E)) / (2 * step)
     assert errors.slope(held, FULL_E) == pytest.approx(rise, abs=1e-6)
     assert errors.read(np.array([FULL_E]), FULL_E)[0] == pytest.approx(FULL_E * (1 - nonlinearity))
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"smear": -1.0}, "smear.*-1.0"),
-        ({"crosstalk": 0.7}, "crosstalk.*0.5.*got 0.7"),
-        ({"hot": float("nan")}, "hot.*nan"),
-    ],
-)
-def test_impossible_errors_are_refused(changes: dict[str, float], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        PixelErrors(**changes)

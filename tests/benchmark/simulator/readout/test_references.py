@@ -105,20 +105,6 @@ def test_the_pixels_estimated_by_flats_and_darks_are_wrong_by_what_is_left() -> 
 
 
 @pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ({"flats": -1}, "-1.*16"),
-        ({"darks": -2}, "16.*-2"),
-        ({"level": 0.0}, "between 0 and 1; got 0.0"),
-        ({"level": 1.0}, "between 0 and 1; got 1.0"),
-    ],
-)
-def test_impossible_references_are_refused(wrong: dict[str, float], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        References(**wrong)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
     "name",
     [
         "ccd-slit", "qpd-single-aperture", "psd-single-aperture", "pd-slit", "pd-code-dial",

@@ -197,19 +197,6 @@ def test_current_changes_with_temperature_by_the_coefficient() -> None:
     assert seen[[0, 4]] == pytest.approx([60 * (1 + 0.0006 * 24), 80 * (1 + 0.0006 * 32)])
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"in_series": 0}, "in_series.*1.*0"),
-        ({"loss": 1.0}, r"loss.*\[0.*1\).*1.0"),
-        ({"mismatch": -0.1}, "must not be negative; got -0.1"),
-    ],
-)
-def test_impossible_cells_are_refused(changes: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        SolarCells(**changes)
-
-
 def test_opto_isolators_gain_with_the_light_and_are_far_apart() -> None:
     sensor = OptoIsolatorSensor(sphere(3000), replace(IDEAL, gain_mismatch=0.3), sun=POINT)
     pattern = sensor.fixed_pattern("test")
