@@ -1,19 +1,13 @@
-"""Draws faults, calibrates, and counts what is called good and errs more than it states.
-
-``python tests/calibrate/causes/campaign.py 20`` draws twenty files of each fault and sensor.
-"""
+"""Draws a fault, calibrates, and says whether the file is called good and how it errs in flight."""
 
 from __future__ import annotations
 
 import re
-import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
-from faults import COUNT, FAULTS, OF_LIGHT, SENSORS, drawn, true_error
+from faults import SENSORS, drawn, true_error
 
 from algorithms.contract import UnusableDataError
 from calibrate.calibration import calibrate
@@ -72,33 +66,3 @@ def outcome(kind: str, fault: str, seed: int) -> Outcome:
         kind, fault, seed, made.said, verdict.word, verdict.reason, found.chosen.rms_deg, true,
         answered, made.unseen, verdict.untested, made.half,
     )  # fmt: skip
-
-
-def main(count: int, first: int, faults: list[str], kinds: list[str]) -> None:
-    """Print, of each fault and sensor, how many are good and which of these are false."""
-    say = sys.stdout.write
-    say(f"{count} files of {COUNT} rows each, seeds {first} to {first + count - 1}\n")
-    for fault in faults:
-        for kind in kinds:
-            if fault in OF_LIGHT and kind == "spot":
-                continue
-            every = [outcome(kind, fault, seed) for seed in range(first, first + count)]
-            good = [one for one in every if one.word == "good"]
-            false = [one for one in good if one.false]
-            say(f"{fault or 'clean'} {kind}: {len(good)} good, {len(false)} false\n")
-            for one in false if fault else [o for o in every if o.word != "good"] + false:
-                unseen = " cannot be seen" if one.unseen else ""
-                unseen += " said to be hidden" if one.hidden else ""
-                say(
-                    f"    {one.seed} {one.said}: {one.word} {one.stated_deg:.3g}, true "
-                    f"{one.true_deg:.3g}, answered {one.answered:.2f}{unseen}; "
-                    f"{one.reason[:160]}; untested: {len(one.untested)}\n"
-                )
-            sys.stdout.flush()
-
-
-if __name__ == "__main__":
-    wanted = sys.argv[3].split(",") if len(sys.argv) > 3 else ["", *FAULTS]
-    kinds = sys.argv[4].split(",") if len(sys.argv) > 4 else list(SENSORS)
-    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    main(int(sys.argv[1]), first, [f if f != "clean" else "" for f in wanted], kinds)

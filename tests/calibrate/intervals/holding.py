@@ -1,25 +1,12 @@
-"""Measures 95 % intervals on fresh poses, by band of 10 deg and axis, of models and their C code.
-
-``python tests/calibrate/intervals/holding.py uneven 1500 0 5`` calibrates each sensor of a
-set (uneven, even, unseen) by five files of 1500 poses.
-"""
+"""95 % intervals on fresh poses, by band of 10 deg and axis, of models and of their C code."""
 
 from __future__ import annotations
 
-import shutil
-import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-
-if __name__ == "__main__":
-    HERE = Path(__file__).parent
-    sys.path[:0] = [str(HERE), *(str(HERE.parent / at) for at in ("", "causes", "flight"))]
-
-import unseen
-from uneven import SENSORS, VECTOR, Uneven, ball, square
+from uneven import VECTOR, Uneven, ball, square
 
 from calibrate.calibration import Calibration, calibrate
 from calibrate.flight.code import flight_code
@@ -115,66 +102,6 @@ def by_code(found: Calibration, raw: np.ndarray, directory: Path) -> tuple[np.nd
     return answers[:, 1:4], answers[:, 6:8]
 
 
-def own_limit(poses: np.ndarray) -> float:
-    """Share of cells outside 93 to 97 % if each had a limit from its own poses alone.
-
-    The largest of the poses' errors but every twentieth: what it covers of new ones has a beta
-    distribution (split conformal prediction).
-    """
-    from scipy.stats import beta
-
-    place = np.ceil(0.95 * (poses + 1))
-    low, high = (beta.cdf(share, place, poses + 1 - place) for share in (LEAST, MOST))
-    return float(np.mean(1.0 - (high - low)))
-
-
 def _mean(inside: np.ndarray) -> float:
     known = inside[np.isfinite(inside)]
     return float(known.mean()) if len(known) else float("nan")
-
-
-def main(of: str, count: int, first: int, seeds: int, wanted: list[str]) -> None:
-    """Print coverage by band, and how far it is scatter between files or bias of all of them."""
-    say = sys.stdout.write
-    sensors = {"uneven": SENSORS, "even": even(), "unseen": unseen.SENSORS}[of]
-    every: list[Cell] = []
-    with tempfile.TemporaryDirectory() as directory:
-        for name, sensor in sensors.items():
-            if wanted and name not in wanted:
-                continue
-            found = [
-                cell
-                for seed in range(first, first + seeds)
-                for cell in cells(
-                    name, sensor, seed, count, Path(directory), code=shutil.which("gcc") is not None
-                )
-            ]
-            every += found
-            say(f"{name}: {sum(one.outside for one in found)} of {len(found)} cells outside\n")
-            for axis in (0, 1):
-                said = []
-                for band in sorted({one.band_deg for one in found}):
-                    here = [o.model for o in found if (o.band_deg, o.axis) == (band, axis)]
-                    said.append(
-                        f"{band}: {100 * np.mean(here):.1f} +- {100 * np.std(here):.1f}"
-                    ) if here else None
-                say(f"    axis {axis}  {'  '.join(said)}\n")
-            sys.stdout.flush()
-    shares, poses = np.array([one.model for one in every]), np.array([o.poses for o in every])
-    by_code = np.array([one.code for one in every])
-    say(
-        f"{count} poses, {len(every)} cells, {sum(one.outside for one in every)} outside 93 to 97 "
-        f"% (limits from each band alone: {own_limit(poses) * len(every):.0f}); mean "
-        f"{100 * shares.mean():.2f} %, standard deviation {100 * shares.std():.2f} %\n"
-        f"C code: {np.sum((by_code < LEAST) | (by_code > MOST))} outside, from the model's by at "
-        f"most {100 * np.nanmax(np.abs(by_code - shares)):.2f} %\n"
-    )
-    for one in (one for one in every if one.outside):
-        say(
-            f"    {one.sensor} seed {one.seed}, {one.band_deg} deg, axis {one.axis}: "
-            f"{100 * one.model:.1f} %, {one.poses} poses\n"
-        )
-
-
-if __name__ == "__main__":
-    main(sys.argv[1], *(int(one) for one in sys.argv[2:5]), sys.argv[5:])
