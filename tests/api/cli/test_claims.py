@@ -14,9 +14,8 @@ def run_claims(*arguments):
     return answer.stdout
 
 
-def test_the_whole_ledger_by_command_and_by_http(atlas):
+def test_the_whole_ledger_is_listed():
     document = json.loads(run_claims("--format", "json"))
-    assert document == atlas.get("/v1/claims").json()
     assert document["total"] == 55
     assert document["tally"] == tally(ledger())
     for item in document["items"]:

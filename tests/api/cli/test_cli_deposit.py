@@ -52,20 +52,6 @@ def test_a_damaged_file_fails_with_its_name(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "why"),
-    [
-        (("upload", "--production", "--server", "https://a.example"), "give one"),
-        (("upload", "--draft", "1", "--new-version", "2"), "give one"),
-        (("publish",), "record_id"),
-    ],
-)
-def test_a_wrong_call_is_named(arguments, why):
-    shown = deposit(*arguments)
-    assert shown.exit_code == 2
-    assert why in shown.stderr
-
-
-@pytest.mark.parametrize(
     ("arguments", "variable"),
     [
         (("upload",), "ZENODO_SANDBOX_TOKEN"),

@@ -56,13 +56,6 @@ def test_the_line_in_the_help_is_the_first_of_the_command_s_own():
         assert (command.help or "").partition("\n")[0] == line
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_explains_itself(name):
-    shown = invoke(name, "--help")
-    assert shown.exit_code == 0
-    assert shown.stdout.startswith(f"Usage: sunatlas {name}")
-
-
 def test_version_is_the_project_s():
     declared = re.search(r'^version = "(.+)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
     assert invoke("--version").stdout == f"sunatlas {declared[1]}\n"

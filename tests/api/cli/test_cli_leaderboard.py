@@ -1,4 +1,4 @@
-"""`sunatlas leaderboard` on one screen, and what HTTP says of the same."""
+"""`sunatlas leaderboard` on one screen, and its findings."""
 
 import csv
 import io
@@ -53,28 +53,6 @@ def test_without_options_the_answer_fits_one_screen(rows):
         assert float(error.rstrip("=")) == pytest.approx(row["own_error_deg"], rel=0.005)
         assert float(ratio) == pytest.approx(row["over_bound"], rel=0.005)
         assert float(bench) == pytest.approx(row["on_bench_deg"], rel=0.005)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "path", "listed"),
-    [
-        ([], "/v1/leaderboard/architectures", "items"),
-        (["--detector", "PD"], "/v1/leaderboard/architectures?detector=PD", "items"),
-        (["--mask", "Slit"], "/v1/leaderboard/architectures?mask=Slit", "items"),
-        (["--overview"], "/v1/leaderboard/overview", "parts"),
-        (
-            ["--overview", "--detector", "CCD", "--detector", "CMOS", "--mask", "Slit"],
-            "/v1/leaderboard/overview?detector=CCD&detector=CMOS&mask=Slit",
-            "parts",
-        ),
-    ],
-)
-def test_the_command_and_the_service_say_the_same(atlas, arguments, path, listed):
-    served = atlas.get(path).json()
-    assert json.loads(sunatlas(*arguments, "--format", "json")) == served
-    assert served[listed]
-    table = list(csv.DictReader(io.StringIO(sunatlas(*arguments, "--format", "csv"))))
-    assert table == atlas.table(path)
 
 
 def test_findings_are_those_of_the_readme_and_come_with_their_pairs():

@@ -91,12 +91,6 @@ def test_what_is_published_is_read_there():
     assert found["sources"]["measured"] == 0
 
 
-def test_an_unknown_condition_of_a_study_s_data_is_refused():
-    shown = sunatlas("run", "Allgeier2009", "--condition", "nominale")
-    assert shown.exit_code == 1
-    assert "'nominal'" in shown.stderr
-
-
 @pytest.mark.parametrize(
     ("environment", "expected"),
     [

@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
+from benchmark.results.store import PUBLISHED
 
 ROOT = Path(__file__).resolve().parents[3]
 SUNATLAS = (sys.executable, "-m", "api.cli.command_line")
@@ -47,6 +48,20 @@ def odd(tmp_path):
         ("claims --search=", 2, "--search: "),
         ("claims C04 --search x", 2, "an ID stands alone"),
         ("compile x", 2, "got x"),
+        ("recommend --mission leo", 2, "--mission: .*leo-cubesat"),
+        ("recommend --detector CMOSS", 2, "--detector: .*CMOS"),
+        ("recommend --max-error-deg -1", 2, "--max-error-deg: .*above 0"),
+        ("get /v1/flows/eror", 2, "the nearest is 'error'"),
+        ("get /v1/studies?detektor=CMOS", 2, "the nearest is 'detector'"),
+        ("get /nowhere", 2, "/nowhere: "),
+        ("run", 2, "study's key and --suite"),
+        ("run Chang2008 --suite quick", 2, "study's key and --suite"),
+        ("run Allgeier2009 --condition nominale", 1, "'nominal'"),
+        ("verify --sample 0", 2, "--sample: got '0'"),
+        (f"gc --store {PUBLISHED}", 2, "`sunatlas leaderboard`"),
+        ("deposit publish", 2, "record_id"),
+        ("deposit upload --production --server https://a.example", 2, "give one"),
+        ("survey import {odd}/file --map =detector", 2, "--map: .*COL=ATTRIBUTE"),
         ("plan --store {odd}/file", 2, r"--store: {odd}/file\b.*directory"),
         ("benchmark --dataset pd-slit --extractor bcm", 1, r"pd-slit, bcm: .*frames"),
         ("leaderboard --field 25", 2, "25; expected one of 10, 20"),

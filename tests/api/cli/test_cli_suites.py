@@ -13,7 +13,7 @@ from api.cli import measuring
 from api.cli.command_line import app
 from benchmark.leaderboard.scope import UNITS, first
 from benchmark.plan.parts import Parts, installed_parts
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import Store
 from benchmark.running.runner import run
 from benchmark.suites import planning
 
@@ -64,25 +64,6 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
     assert again["scores"] == done["scores"]
     assert again["sources"]["kept"] == len(measured)
     assert "0 of" in sunatlas("plan").stderr
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("run",), "study's key and --suite"),
-        (("run", "Chang2008", "--suite", "quick"), "study's key and --suite"),
-        (("run", "--suite", "quick", "--condition", "nominal"), "--condition goes with a study"),
-        (("verify", "--sample", "0"), "--sample: got '0'"),
-        (("gc", "--store", str(PUBLISHED)), "`sunatlas leaderboard`"),
-    ],
-)
-def test_a_wrong_call_is_one_line_that_says_what_is_right(
-    arguments: tuple[str, ...], said: str
-) -> None:
-    called = CliRunner().invoke(app, list(arguments))
-    assert called.exit_code != 0
-    assert said in " ".join(called.stderr.split())
-    assert "Traceback" not in called.stderr
 
 
 @pytest.fixture

@@ -133,23 +133,6 @@ def test_a_cell_that_cannot_be_read_is_named_and_nothing_is_written(copy, theirs
         assert (copy / "attributes.csv").read_bytes() == before
 
 
-@pytest.mark.parametrize(
-    ("mapped", "code", "says"),
-    [
-        ("Sensor technology", 2, "expected COL=ATTRIBUTE"),
-        ("=detector", 2, "expected COL=ATTRIBUTE"),
-        ("Sensor technology=detecter", 1, "detector"),
-        ("Sensor tecnology=detector", 1, "Sensor technology"),
-    ],
-)
-def test_a_mapping_that_cannot_be_is_refused(copy, theirs, mapped, code, says):
-    shown = survey("import", theirs, "--map", mapped, "--data", copy)
-    assert shown.exit_code == code
-    assert shown.stdout == ""
-    assert shown.stderr.count("\n") == 1
-    assert says in shown.stderr
-
-
 def test_a_bibliography_is_shown_and_then_taken_over(copy, tmp_path):
     bib = tmp_path / "refs.bib"
     bib.write_text("@article{Fan2017, author={Q. Fan}, title={A title}, year={2017}}\n", "utf-8")

@@ -20,19 +20,11 @@ def pinned(tmp_path_factory, client_of):
     """A service whose published pins are two, one of them of another version."""
     directory = tmp_path_factory.mktemp("published")
     pins = [
-        Pin(
-            NAME,
-            "nominal",
-            "test",
-            datasets.get(NAME).version,
-            400,
-            "a" * 32,
-            "c" * 32,
-            400,
-            0.25,
-            0.25,
-        ),
-        Pin(NAME, "hot", "test", 99, 400, "b" * 32, "c" * 32, 400, 0.5, 0.5),
+        Pin(NAME, condition, "test", version, 400, 32 * letter, 32 * "c", 400, bound, bound)
+        for condition, version, letter, bound in (
+            ("nominal", datasets.get(NAME).version, "a", 0.25),
+            ("hot", 99, "b", 0.5),
+        )
     ]
     Store(directory).write({}, pins, Components())
     return client_of(create_app(Knowledge(Measurements(directory))))

@@ -6,9 +6,6 @@ import hashlib
 import json
 import math
 import re
-import socket
-import threading
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,12 +13,10 @@ import mlcroissant
 import msgspec_schemaorg.models as schema_org
 import pytest
 import rdflib
-import uvicorn
 from signposting import find_signposting_http, find_signposting_http_link
 
 from api.metadata.signposting import landing_of_study
 from benchmark import datasets
-from tests.api.conftest import Client
 
 PAGES = {
     "/": {"DataCatalog", "SoftwareApplication"},
@@ -37,22 +32,10 @@ DATASETS = ("pd-slit", "cmos-single-aperture")
 
 
 @pytest.fixture(scope="module")
-def address(atlas: Client) -> Iterator[str]:
+def address(atlas, serve) -> Iterator[str]:
     """The service on a port."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        options = {"log_level": "warning", "ws": "none", "lifespan": "off"}
-        server = uvicorn.Server(uvicorn.Config(atlas.app, **options))
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
-        thread.start()
-        deadline = time.monotonic() + 120
-        while not server.started:
-            assert thread.is_alive()
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
-        yield f"http://127.0.0.1:{listener.getsockname()[1]}"
-        server.should_exit = True
-        thread.join(timeout=30)
+    with serve(atlas.app) as connection:
+        yield f"http://{connection.host}:{connection.port}"
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """Every refusal is a problem document that names what would have been right."""
 
 import json
-import math
 
 import pytest
 
@@ -183,8 +182,7 @@ def test_json_answers_hold_no_nan(atlas):
         raise AssertionError(name)
 
     for path in TABLES:
-        document = json.loads(atlas.get(path).content, parse_constant=refuse)
-        assert not (isinstance(document, float) and math.isnan(document))
+        json.loads(atlas.get(path).content, parse_constant=refuse)
 
 
 def test_a_failure_is_a_problem_that_tells_nothing_of_the_inside(client_of):
