@@ -6,7 +6,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
@@ -28,23 +27,6 @@ basis = "title"
 def add(*arguments: object) -> Any:
     call = ["survey", "add", *map(str, arguments)]
     return CliRunner(env={"COLUMNS": "200"}).invoke(app, call, catch_exceptions=False)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (("--init", "Doe2030", "--apply"), "--init goes without --apply"),
-        ((), "expected a file, or --init KEY for a template"),
-        (("--init", "Doe2030", "new.txt"), "a file that ends in .toml; got 'new.txt'"),
-    ],
-)
-def test_a_call_that_does_not_say_one_thing_is_refused(
-    arguments: tuple[str, ...], says: str
-) -> None:
-    refused = add(*arguments)
-    assert (refused.exit_code, refused.stdout) == (2, "")
-    assert says in refused.stderr
-    assert refused.stderr.count("\n") == 1
 
 
 def test_a_template_is_not_written_over_a_file(tmp_path: Path) -> None:
