@@ -12,9 +12,8 @@ from typing import Any
 from typer.testing import CliRunner
 
 from api.addresses import algorithm_page
+from api.cli.asking import knowledge
 from api.cli.command_line import COMMANDS, app, load
-from api.docs.knowledge import knowledge
-from api.guide.site import source
 from api.pages.methods import docstring_parts
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.leaderboard.headlines import Headline, headlines
@@ -25,12 +24,6 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Write a table in Markdown; cells are one line each."""
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join(f"| {' | '.join(map(_cell, line))} |" for line in lines)
-
-
-def findings() -> str:
-    """Return the findings of the README, which the wheel has beside the pages."""
-    readme = (source().parent / "README.md").read_text("utf-8")
-    return readme.partition("<!-- generated: findings -->")[2].partition("<!-- end:")[0]
 
 
 def command_line() -> str:
@@ -89,7 +82,6 @@ def definitions() -> str:
 
 #: What makes each part, by its name.
 PARTS: Mapping[str, Callable[[], str]] = {
-    "findings": findings,
     "command-line": command_line,
     "facts": tables_of_facts,
     "models": models,

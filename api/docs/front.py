@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from api.docs.knowledge import knowledge
+from api.cli.asking import knowledge
 from api.service import leaderboard
 from benchmark.claims.ledger import ledger, tally
 from benchmark.leaderboard import summaries

@@ -188,7 +188,6 @@ def _settings() -> dict[str, Any]:
         "autodoc_preserve_defaults": True,
         "napoleon_google_docstring": False,
         "nitpick_ignore_regex": [("py:.*", ".*")],
-        "source_suffix": {".md": "markdown"},
         "myst_enable_extensions": ["dollarmath"],
         "myst_heading_anchors": 6,
         "myst_dmath_double_inline": True,

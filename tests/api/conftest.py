@@ -19,7 +19,6 @@ import uvicorn
 from fastapi import FastAPI
 
 from api.cli import asking
-from api.docs import knowledge as of_docs
 from api.server import app as service
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
@@ -83,7 +82,6 @@ def knowledge(_own_working_store: None) -> Iterator[Knowledge]:
     """What is published, read once for the service, the command line and the docs: 5 s each."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(service, "Knowledge", asking.knowledge)
-        patch.setattr(of_docs, "Knowledge", asking.knowledge)
         yield asking.knowledge()
 
 

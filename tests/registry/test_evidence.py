@@ -9,7 +9,7 @@ from types import MappingProxyType
 import pytest
 
 from algorithms.design import SensorGeometry
-from api.docs.knowledge import knowledge
+from api.cli.asking import knowledge
 from api.service import studies as service
 from benchmark.plan.shown import data_sets, design
 from registry.fidelity import evidence

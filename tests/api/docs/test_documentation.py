@@ -1,15 +1,13 @@
-"""Generated parts in git are what the code says now; those of the guide are whole."""
+"""Generated parts in git are what the code says now, and are renewed by name."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from api.docs import built_parts, documentation, front
+from api.docs import documentation
 from api.docs.documentation import DocumentationError, regenerate, renew_parts
-from benchmark.assessment.definitions import DEFINITIONS
 
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
@@ -47,33 +45,3 @@ def test_a_part_that_is_missing_unknown_or_there_twice_is_named(
 ) -> None:
     with pytest.raises(DocumentationError, match=r"page\.md: expected"):
         renew_parts("page.md", text, {name: lambda: "" for name in parts})
-
-
-def test_every_built_sensor_below_its_bound_is_drawn_open() -> None:
-    bounds = {(row["detector"], row["mask"]): row["bound_deg"] for row in front._architectures()}
-    below = [
-        error
-        for place, errors in front.built_sensors().items()
-        for error in errors
-        if error < bounds.get(place, 0.0)
-    ]
-    (axes,) = front.figure().axes
-    drawn = [
-        float(error)
-        for line in axes.lines
-        if (line.get_marker(), line.get_fillstyle()) == ("^", "none")
-        for error in np.atleast_1d(line.get_xdata())
-    ]
-    assert sorted(drawn) == sorted(below)
-    assert "below the bound" in axes.get_xlabel()
-
-
-def test_every_model_and_every_definition_stands_in_the_built_guide() -> None:
-    listed = built_parts.models()
-    for model in built_parts.knowledge().catalogue.implementations("model"):
-        for part in model.name.split(" + ")[-1:]:
-            assert f"(<code>{part}</code>)" in listed, model.name
-    definitions = built_parts.definitions()
-    for definition in DEFINITIONS.values():
-        assert definition.name in definitions
-        assert definition.limits() in definitions
