@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numba import njit
+from ray_count import centroid, count_rays, dense_suns
+from scenes import incident, lit_by
 
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
@@ -16,7 +17,6 @@ from benchmark.simulator.masks.layouts import grid, slit
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
@@ -60,87 +60,27 @@ def sensor_over(sun: np.ndarray, mask: Mask, **sun_disc) -> MultiSpotSensor:
     return MultiSpotSensor(replace(camera, mask=moved_mask), DETECTOR, spectrum=None)
 
 
-def one_scene(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
-
-
 def light(sensor: MultiSpotSensor, sun: np.ndarray) -> np.ndarray:
-    return sensor.lit(one_scene(sun), sensor.fixed_pattern("test"))
-
-
-def incident(theta_deg: float, azimuth_deg: float) -> np.ndarray:
-    theta, azimuth = math.radians(theta_deg), math.radians(azimuth_deg)
-    across = math.sin(theta)
-    return np.array([[across * math.cos(azimuth), across * math.sin(azimuth), math.cos(theta)]])
-
-
-@njit
-def count_rays(boxes, rims, weights, sub, rng):
-    """Share of randomly jittered rays through both rims of any rectangle, by pixel."""
-    frame = np.zeros((SIZE, SIZE))
-    for row in range(SIZE):
-        for column in range(SIZE):
-            for m in range(boxes.shape[0]):
-                x0, y0, a, b, turn = boxes[m]
-                c, s = math.cos(turn), math.sin(turn)
-                for k in range(weights.shape[0]):
-                    least = 1e9
-                    for rim in rims[:, k]:
-                        dx, dy = column + 0.5 - x0 - rim[0], row + 0.5 - y0 - rim[1]
-                        inside = min(a - abs(c * dx + s * dy), b - abs(c * dy - s * dx))
-                        least = min(least, inside)
-                    if abs(least) > 0.75:  # no edge within half the pixel's diagonal
-                        frame[row, column] += weights[k] * (least > 0)
-                        continue
-                    hits = 0
-                    for i in range(sub * sub):
-                        x = column + (i % sub + rng.random()) / sub - x0
-                        y = row + (i // sub + rng.random()) / sub - y0
-                        passed = True
-                        for rim in rims[:, k]:
-                            dx, dy = x - rim[0], y - rim[1]
-                            passed &= abs(c * dx + s * dy) < a and abs(c * dy - s * dx) < b
-                        hits += passed
-                    frame[row, column] += weights[k] * hits / sub**2
-    return frame
+    return sensor.lit(lit_by(sun), sensor.fixed_pattern("test"))
 
 
 def ray_count(sun: np.ndarray, mask: Mask) -> np.ndarray:
-    """The whole detector by rays traced one by one; the Sun on a grid, angles throughout."""
-    grid_of_sun = (np.arange(25) + 0.5) / 25 * 2 - 1
-    u, v = (axis.ravel() for axis in np.meshgrid(grid_of_sun, grid_of_sun))
-    keep = u**2 + v**2 <= 1
-    u, v = u[keep], v[keep]
-    weight = 1 - 0.6 * (1 - np.sqrt(1 - u**2 - v**2))
-    e1 = np.cross([0.0, 1.0, 0.0], sun)
-    e1 /= np.linalg.norm(e1)
-    e2 = np.cross(sun, e1)
-    rays = sun + math.sin(math.radians(0.533 / 2)) * (u[:, None] * e1 + v[:, None] * e2)
-    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-    theta, azimuth = np.arccos(rays[:, 2]), np.arctan2(rays[:, 1], rays[:, 0])
-    way = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1) * np.tan(theta)[:, None] / PITCH_MM
-    boxes = np.array(
+    """The whole detector by rays traced one by one."""
+    rays, weights = dense_suns(sun, 25)
+    way = rays[:, :2] / rays[:, 2:] / PITCH_MM
+    openings = np.array(
         [
             (
-                a.x_mm / PITCH_MM + SIZE / 2,
-                a.y_mm / PITCH_MM + SIZE / 2,
-                a.width_mm / 2 / PITCH_MM,
-                a.height_mm / 2 / PITCH_MM,
+                *(a.x_mm / PITCH_MM + SIZE / 2, a.y_mm / PITCH_MM + SIZE / 2),
+                *(a.width_mm / 2 / PITCH_MM, a.height_mm / 2 / PITCH_MM),
                 math.radians(a.rotation_deg),
             )
             for a in mask.apertures
         ]
     )
-    half = mask.thickness_mm / 2
-    weights = weight / weight.sum() * np.cos(theta)
-    rng = np.random.default_rng(11)
-    rims = np.stack([way * (H_MM - half), way * (H_MM + half)])
-    return count_rays(boxes, rims, weights, 8, rng)
-
-
-def centroid(frame: np.ndarray) -> np.ndarray:
-    y, x = np.mgrid[: frame.shape[0], : frame.shape[1]]
-    return np.array([(frame * x).sum(), (frame * y).sum()]) / frame.sum()
+    rims = (way * (H_MM + sign * mask.thickness_mm / 2) for sign in (-1, 1))
+    suns = np.column_stack([*rims, weights * rays[:, 2]])
+    return count_rays((SIZE, SIZE), openings, suns, 8, np.random.default_rng(11))
 
 
 @pytest.mark.slow
@@ -170,7 +110,7 @@ def test_apertures_pass_their_share_and_light_beyond_the_edge_is_lost() -> None:
     sensor = sensor_over(up, MASKS["squares"], diameter_deg=0.0)
     pattern = dict(sensor.fixed_pattern("test"))
     pattern["transmission"] = np.array([1.0, 0.0, 0.25, 0.5])
-    frame = sensor.lit(one_scene(up), pattern)[0]
+    frame = sensor.lit(lit_by(up), pattern)[0]
     whole = 0.15**2 / PITCH_MM**2
     quarters = frame.reshape(2, SIZE // 2, 2, SIZE // 2).sum(axis=(1, 3))
     assert quarters.ravel() == pytest.approx(whole * pattern["transmission"], rel=1e-12)
@@ -182,7 +122,7 @@ def test_apertures_pass_their_share_and_light_beyond_the_edge_is_lost() -> None:
     sensor = MultiSpotSensor(Camera(H_MM, mask, SolarDisc(0.0)), DETECTOR, spectrum=None)
     frame = light(sensor, up)[0]
     assert frame.sum() == pytest.approx(whole / 2, rel=1e-12)
-    boxes = sensor.boxes(one_scene(up), sensor.fixed_pattern("test"))[0]
+    boxes = sensor.boxes(lit_by(up), sensor.fixed_pattern("test"))[0]
     assert boxes[0, 1] == SIZE
     assert boxes[1, 3] <= boxes[1, 2] or boxes[1, 2] == SIZE
 
@@ -195,7 +135,7 @@ def test_each_spot_is_what_a_window_around_it_shows(name: str) -> None:
     glass = CoverGlass((Plate(0.3, 1.5),))
     sensor = replace(sensor, camera=replace(sensor.camera, glass=glass))
     windows = FrameSensor(sensor.camera, DETECTOR, (SIZE, SIZE), 0)
-    scene = replace(one_scene(sun), origin_px=np.zeros((2, 2), dtype=np.int64))
+    scene = replace(lit_by(sun), origin_px=np.zeros((2, 2), dtype=np.int64))
     assert light(sensor, sun) == pytest.approx(windows.lit(scene), abs=1e-12)
 
 
@@ -229,7 +169,7 @@ def test_grid_and_slit_are_inverted_exactly(alpha: float, beta: float) -> None:
     frame = light(sensor, sun)[0]
     for aperture, box in zip(
         sensor.camera.mask.apertures,
-        sensor.boxes(one_scene(sun), sensor.fixed_pattern("test"))[0],
+        sensor.boxes(lit_by(sun), sensor.fixed_pattern("test"))[0],
         strict=True,
     ):
         alone = np.zeros_like(frame)
@@ -269,10 +209,10 @@ def test_spots_are_where_the_built_mask_puts_them() -> None:
     sun = from_angles(np.array([5.0]), np.array([-8.0]))
     sensor = replace(sensor_over(sun, MASKS["squares"], diameter_deg=0.0), errors=errors)
     pattern = sensor.fixed_pattern("unit")
-    frame = sensor.lit(one_scene(sun), pattern)[0]
+    frame = sensor.lit(lit_by(sun), pattern)[0]
     centre = sensor.camera.spot_mm(sun)[0] / sensor.detector.pitch_mm + sensor.detector.centre_px
     spots = centre + pattern["apertures"][:, 1:3]
-    for box, spot in zip(sensor.boxes(one_scene(sun), pattern)[0], spots, strict=True):
+    for box, spot in zip(sensor.boxes(lit_by(sun), pattern)[0], spots, strict=True):
         x0, x1, y0, y1 = box
         part = np.zeros_like(frame)
         part[y0:y1, x0:x1] = frame[y0:y1, x0:x1]

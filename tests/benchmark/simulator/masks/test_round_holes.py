@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numba import njit
+from ray_count import count_rays, dense_suns
 from scipy.optimize import brentq
 from shadows import shadows
 
@@ -194,50 +194,6 @@ def test_a_spiral_has_the_low_moments_of_the_disc(count: int, darkening: float) 
     assert np.hypot(x, y).max() < 1
 
 
-@njit
-def count_rays(size, hole, paths, weights, rng):
-    """Share of randomly jittered rays through both rims of one round hole, by pixel."""
-    frame, sub = np.zeros(size), 6
-    x0, y0, radius = hole
-    for k in range(weights.shape[0]):
-        for row in range(size[0]):
-            for column in range(size[1]):
-                far = 0.0
-                for path in paths[k]:
-                    dx, dy = column + 0.5 - x0 - path[0], row + 0.5 - y0 - path[1]
-                    far = max(far, math.sqrt(dx * dx + dy * dy))
-                if abs(far - radius) > 0.75:  # no rim within half the pixel's diagonal
-                    frame[row, column] += weights[k] * (far < radius)
-                    continue
-                hits = 0
-                for i in range(sub * sub):
-                    passed = True
-                    x = column + (i % sub + rng.random()) / sub - hole[0]
-                    y = row + (i // sub + rng.random()) / sub - hole[1]
-                    for path in paths[k]:
-                        passed &= (x - path[0]) ** 2 + (y - path[1]) ** 2 < radius * radius
-                    hits += passed
-                frame[row, column] += weights[k] * hits / sub**2
-    return frame
-
-
-def dense_suns(sun: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(K, 3) and (K,): the disc on a square grid, turned by an odd angle."""
-    cells = 61
-    grid = (np.arange(cells) + 0.5) / cells * 2 - 1
-    u, v = (axis.ravel() for axis in np.meshgrid(grid, grid))
-    keep = u**2 + v**2 <= 1
-    u, v = u[keep], v[keep]
-    weight = 1 - 0.6 * (1 - np.sqrt(1 - u**2 - v**2))
-    u, v = 0.8 * u - 0.6 * v, 0.6 * u + 0.8 * v
-    e1 = np.cross([0.0, 1.0, 0.0], sun)
-    e1 /= np.linalg.norm(e1)
-    rays = sun + math.sin(math.radians(0.533 / 2)) * (
-        u[:, None] * e1 + v[:, None] * np.cross(sun, e1)
-    )
-    return rays / np.linalg.norm(rays, axis=1, keepdims=True), weight / weight.sum()
-
-
 @pytest.mark.slow
 def test_pixels_are_within_half_a_percent_of_a_ray_count_all_over_the_field() -> None:
     worst = {name: max(off_by(name, turn) for turn in range(4)) for name in GRIDS}
@@ -269,20 +225,20 @@ def off_by(name: str, turn: int) -> float:
     chosen = np.flatnonzero(inside & (boxes[:, 1] > boxes[:, 0]))[0]
     left, right, top, bottom = boxes[chosen]
     head = sensor.camera.assembly.to_head(sun)[0]
-    rays, weights = dense_suns(head)
+    rays, weights = dense_suns(head, 61, math.atan2(0.6, 0.8))
     mask, pitch = sensor.camera.mask, sensor.detector.pitch_mm
     offset = [sensor.camera.assembly.offset_x_mm, sensor.camera.assembly.offset_y_mm]
     heights = [sensor.camera.height_mm + sign * mask.thickness_mm / 2 for sign in (-1, 1)]
     assert not sensor.camera.glass.plates
     way = rays[:, :2] / rays[:, 2:]
-    paths = np.stack([(h * way + offset) / pitch for h in heights], axis=1)
+    rims = [(h * way + offset) / pitch for h in heights]
     x, y, radius = pattern["apertures"][chosen, 1:4]
-    hole = np.array([x + size / 2 - left, y + size / 2 - top, radius])
+    hole = np.array([[x + size / 2 - left, y + size / 2 - top, radius, 0.0, 0.0]])
     count = count_rays(
         (int(bottom - top), int(right - left)),
         hole,
-        paths,
-        weights * rays[:, 2] * pattern["transmission"][chosen],
+        np.column_stack([*rims, weights * rays[:, 2] * pattern["transmission"][chosen]]),
+        6,
         np.random.default_rng(5),
     )
     # the spots of neighbours may reach into the box

@@ -17,10 +17,10 @@ from diffracted_currents import (
     sampled_slit,
     spread,
 )
+from scenes import toward
 
 from algorithms.contract import Observation
 from benchmark import datasets
-from benchmark.simulator.light.sun_disc import from_angles
 
 
 class Setup:
@@ -71,10 +71,6 @@ SETUPS = {
     "pd-single-aperture": (0.004, 1.2),
     "psd-single-aperture": (0.003, 2.7),
 }
-
-
-def toward(alpha: float, beta: float) -> np.ndarray:
-    return from_angles(np.array([alpha]), np.array([beta]))
 
 
 def test_currents_behind_openings_are_geometric_by_measurement_or_diffracted() -> None:

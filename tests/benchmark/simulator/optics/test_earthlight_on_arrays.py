@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import lit_by, nominal
 
 from benchmark import datasets
 from benchmark.datasets.conditions.flight import FlightPreset
@@ -20,7 +21,6 @@ from benchmark.simulator.masks.slits import slit_row
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.pixel_errors import PixelErrors
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import SeesEarth
 from benchmark.simulator.sensors.events import EventSensor
 from benchmark.simulator.sensors.lit_pixels import LitPixels
@@ -29,14 +29,6 @@ POINT = SolarDisc(diameter_deg=0.0)
 #: A metre above the ground: it fills all there is below, and is lit alike as far as one can see.
 WALL = Earth(altitude_km=0.001)
 AHEAD, BEHIND = np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 0.0, -1.0]])
-
-
-def nominal(name: str) -> Any:
-    return datasets.get(name).setups["nominal"].sensor
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
 
 
 def radiance(sight: np.ndarray, nadir: np.ndarray, sun: np.ndarray) -> np.ndarray:

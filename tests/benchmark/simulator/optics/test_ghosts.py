@@ -10,29 +10,21 @@ import pytest
 from bare_pixels import bare
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import lit_by, toward
 
 from benchmark import datasets
-from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
+from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 
 IDEAL = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=200.0, bits=24)
 POINT = SolarDisc(diameter_deg=0.0)
 GHOST = Ghost(0.5, 0.4)
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
-
-
-def toward(alpha: float, beta: float) -> np.ndarray:
-    return from_angles(np.array([alpha]), np.array([beta]))
 
 
 def quadrants(half_width_mm: float, shape: str = "rectangle") -> QuadrantSensor:

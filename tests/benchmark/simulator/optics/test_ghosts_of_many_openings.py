@@ -8,34 +8,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import lit_by, nominal, toward
 
-from benchmark import datasets
-from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
+from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.masks.slits import SlitErrors, crossed_pairs, periodic, slit_row
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
 from benchmark.simulator.sensors.line_sensor import LineSensor
 from benchmark.simulator.sensors.position_sensitive import PositionSensor, common_rule
 
 POINT = SolarDisc(diameter_deg=0.0)
 GHOST = Ghost(0.5, 0.4)
-
-
-def nominal(name: str) -> Any:
-    return datasets.get(name).setups["nominal"].sensor
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
-
-
-def toward(alpha: float, beta: float) -> np.ndarray:
-    return from_angles(np.array([alpha]), np.array([beta]))
 
 
 def shared(apart: float) -> float:

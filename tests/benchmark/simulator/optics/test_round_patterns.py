@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scenes import lit_by
 from scipy import integrate, optimize
 from scipy.special import fresnel
 
@@ -26,7 +27,6 @@ from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing_
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.table_grids import turned_cell
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 GREEN = Spectrum((550.0,), (1.0,))
@@ -35,10 +35,6 @@ UP = np.array([[0.0, 0.0, 1.0]])
 GRIDS = ["cmos-multi-aperture", "ccd-multi-aperture", "cmos-encoded", "cmos-compound-eye"]
 #: As masks of the standard data sets are built.
 BUILT = MaskErrors(position_mm=0.001, size_mm=0.001, edge_mm=0.0005)
-
-
-def one_scene(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
 
 
 def sensor_of(width_mm: float, height_mm: float = 1.0, **fields) -> MultiSpotSensor:
@@ -188,8 +184,8 @@ def test_a_hole_between_two_tabulated_ones_is_that_hole() -> None:
     drawn = sensor_of(0.1, errors=BUILT)
     wide = sensor_of(0.101)
     pattern = dict(wide.fixed_pattern("test"))
-    found = drawn.lit(one_scene(sun), pattern)
-    expected = wide.lit(one_scene(sun), pattern)
+    found = drawn.lit(lit_by(sun), pattern)
+    expected = wide.lit(lit_by(sun), pattern)
     assert np.abs(found - expected).max() < 1e-3 * expected.max()
 
 
@@ -201,8 +197,8 @@ def test_a_unit_two_deviations_off_shows_holes_of_its_own_size() -> None:
     for off in (-2.0 * BUILT.size_mm, 2.0 * BUILT.size_mm):
         built = sensor_of(0.05 + off, 0.75, spectrum=SUNLIT_SILICON)
         pattern = dict(built.fixed_pattern("test"))
-        found = drawn.lit(one_scene(sun), pattern)
-        expected = built.lit(one_scene(sun), pattern)
+        found = drawn.lit(lit_by(sun), pattern)
+        expected = built.lit(lit_by(sun), pattern)
         worst = np.abs(found - expected).max(axis=(1, 2)) / expected.max(axis=(1, 2))
         assert worst.max() < 2e-3, (off, worst)
 
@@ -234,12 +230,12 @@ def test_holes_of_several_built_sizes_are_those_holes() -> None:
     table = pattern["apertures"].copy()
     table[:, 3:5] += np.array([[0.05], [-0.05]])  # half a micrometre either way
     pattern["apertures"] = table
-    found = pair.lit(one_scene(UP), pattern)
+    found = pair.lit(lit_by(UP), pattern)
     expected = np.zeros(found.shape)
     for n, width in enumerate((0.101, 0.099)):
         one = Mask((Aperture("round", width, width, x_mm=-0.2 + 0.4 * n),))
         single = replace(sensor_of(0.1), camera=replace(base.camera, mask=one))
-        expected += single.lit(one_scene(UP), single.fixed_pattern("test"))
+        expected += single.lit(lit_by(UP), single.fixed_pattern("test"))
     assert np.abs(found - expected).max() < 1e-3 * expected.max()
 
 
@@ -255,8 +251,8 @@ def test_one_averaged_cell_is_a_pixel_of_many() -> None:
     fine = replace(
         one, detector=replace(one.detector, columns=192, rows=192, pitch_mm=0.003), skirt=1e-5
     )
-    found = one.lit(one_scene(sun), one.fixed_pattern("test"))[0]
-    expected = fine.lit(one_scene(sun), fine.fixed_pattern("test"))[0]
+    found = one.lit(lit_by(sun), one.fixed_pattern("test"))[0]
+    expected = fine.lit(lit_by(sun), fine.fixed_pattern("test"))[0]
     expected = expected.reshape(48, 4, 48, 4).mean(axis=(1, 3))
     assert np.abs(found - expected).max() < 5e-3 * expected.max()
 
@@ -264,7 +260,7 @@ def test_one_averaged_cell_is_a_pixel_of_many() -> None:
 def test_light_left_out_is_below_the_stated_share() -> None:
     sun = from_angles(np.array([0.0, 25.0]), np.array([0.0, 10.0]))
     near, far = (replace(sensor_of(0.05), skirt=skirt) for skirt in (1e-3, 1e-6))
-    scene, pattern = one_scene(sun), near.fixed_pattern("test")
+    scene, pattern = lit_by(sun), near.fixed_pattern("test")
     here, there = near.lit(scene, pattern), far.lit(scene, pattern)
     out = (here == 0.0) & (there > 0.0)
     assert out.any()

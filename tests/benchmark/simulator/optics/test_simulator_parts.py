@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import toward
 from scipy import integrate, stats
 
 from benchmark.seeds import generator, seed_sequence
-from benchmark.simulator.light.sun_disc import SolarDisc, from_angles, tangent_axes
+from benchmark.simulator.light.sun_disc import SolarDisc, tangent_axes
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.readout.detectors import (
@@ -24,10 +25,6 @@ from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 angles = st.floats(-70.0, 70.0)
 
 
-def at(alpha: float, beta: float) -> np.ndarray:
-    return from_angles(np.array([alpha]), np.array([beta]))
-
-
 def off_axis(theta_deg: float) -> np.ndarray:
     theta = math.radians(theta_deg)
     return np.array([[math.sin(theta), 0.0, math.cos(theta)]])
@@ -36,7 +33,7 @@ def off_axis(theta_deg: float) -> np.ndarray:
 @given(angles, angles)
 @settings(deadline=None, derandomize=True)
 def test_projection_angles_are_those_of_the_contract(alpha: float, beta: float) -> None:
-    s = at(alpha, beta)[0]
+    s = toward(alpha, beta)[0]
     assert np.linalg.norm(s) == pytest.approx(1.0, abs=1e-15)
     assert math.degrees(math.atan2(s[1], s[2])) == pytest.approx(alpha, abs=1e-12)
     assert math.degrees(math.atan2(s[0], s[2])) == pytest.approx(beta, abs=1e-12)
@@ -64,7 +61,7 @@ def test_solar_quadrature_has_the_mass_and_spread_of_the_limb_darkened_disc() ->
 
 
 def test_points_of_the_disc_are_unit_vectors_within_its_radius() -> None:
-    sun = np.concatenate([at(0, 0), at(30, -50), np.array([[1.0, 0, 0], [0, 0, -1.0]])])
+    sun = np.concatenate([toward(0, 0), toward(30, -50), np.array([[1.0, 0, 0], [0, 0, -1.0]])])
     points = SolarDisc().directions(sun)
     assert np.linalg.norm(points, axis=-1) == pytest.approx(1.0, abs=1e-14)
     apart = np.degrees(np.arccos(np.clip(np.einsum("nkj,nj->nk", points, sun), -1, 1)))
@@ -81,7 +78,7 @@ def test_assembly_turns_like_scipys_rotations() -> None:
     from scipy.spatial.transform import Rotation
 
     assembly = Assembly(tilt_x_deg=1.0, tilt_y_deg=-2.0, rotation_deg=3.0)
-    sun = np.concatenate([at(10, 20), at(-40, 5)])
+    sun = np.concatenate([toward(10, 20), toward(-40, 5)])
     expected = Rotation.from_euler("xyz", [1.0, -2.0, 3.0], degrees=True).apply(sun)
     assert assembly.to_head(sun) == pytest.approx(expected, abs=1e-14)
     assert Assembly().to_head(sun) is sun

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import apart_deg, lit_by
 from scipy.optimize import brentq
 
 from algorithms.extractors.currents.photodiode import VoltageBalance
@@ -20,7 +21,6 @@ from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.readout.detectors import CurrentReadout, DarkCurrent
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.face_layouts import pyramid, sphere
 from benchmark.simulator.sensors.faces import CUBE, Faces
 from benchmark.simulator.sensors.light_to_frequency import FrequencySensor
@@ -42,14 +42,6 @@ ANALOG = (
     "qpd-maskless-pyramid",
 )
 BARE = tuple(name for name in ANALOG if "maskless" in name)
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
-
-
-def apart_deg(first: np.ndarray, second: np.ndarray) -> float:
-    return float(np.degrees(np.linalg.norm(np.cross(first, second), axis=-1)).max())
 
 
 @pytest.mark.parametrize(("faces", "tilt"), [(3, 20.0), (6, 30.0), (7, 71.0)])

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import apart_deg, lit_by, toward
 
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.geometric.standard_projection import StandardProjection
@@ -20,7 +21,6 @@ from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import CurrentReadout
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.position_sensitive import (
     LateralEffect,
     PositionSensor,
@@ -33,18 +33,6 @@ POINT = SolarDisc(diameter_deg=0.0)
 
 field_angle = st.floats(-60.0, 60.0)
 field_share = st.floats(-1.0, 1.0)
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
-
-
-def toward(alpha: float, beta: float) -> np.ndarray:
-    return from_angles(np.array([alpha]), np.array([beta]))
-
-
-def apart_deg(first: np.ndarray, second: np.ndarray) -> float:
-    return float(np.degrees(np.linalg.norm(np.cross(first, second), axis=-1)).max())
 
 
 def perfect(name: str, **detector: Any) -> Any:

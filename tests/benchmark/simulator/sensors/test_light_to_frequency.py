@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from scenes import lit_by
 from scipy.stats import norm
 
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.light_to_frequency import (
     FrequencyCounter,
     FrequencySensor,
@@ -18,10 +18,6 @@ from benchmark.simulator.sensors.light_to_frequency import (
 )
 
 POINT = SolarDisc(diameter_deg=0.0)
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
 
 
 def counter(rate: float, gate_s: float = 1.0, full_scale: float = 1e9) -> FrequencySensor:

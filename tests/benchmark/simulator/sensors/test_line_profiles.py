@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import incident, lit_by
 
 from benchmark import datasets
 from benchmark.simulator.kernels.areas import lit_boxes
@@ -44,16 +45,6 @@ def sensor_with(mask: Mask, **changes: Any) -> LineSensor:
     sun = changes.pop("sun", nominal.camera.sun)
     camera = Camera(H_MM, mask, sun, glass)
     return replace(nominal, camera=camera, **{"errors": SlitErrors(), "spectrum": None, **changes})
-
-
-def scene_of(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
-
-
-def incident(theta_deg: float, azimuth_deg: float) -> np.ndarray:
-    theta, azimuth = math.radians(theta_deg), math.radians(azimuth_deg)
-    across = math.sin(theta)
-    return np.array([[across * math.cos(azimuth), across * math.sin(azimuth), math.cos(theta)]])
 
 
 def sun_rays(
@@ -171,7 +162,7 @@ def test_profiles_agree_with_a_dense_ray_count(theta: float, case: str) -> None:
     )
     slits = np.array([(0.125, 8.0, at, math.radians(slant)) for at, slant in placed])
     sun = incident(theta, azimuth)
-    lit = sensor.lit(scene_of(sun))[0]
+    lit = sensor.lit(lit_by(sun))[0]
     all_rays = np.array(
         [(x, y, z, w * fresnel(z, glass[1])) for x, y, z, w in sun_rays(sun[0], 45, 54)]
     )
@@ -204,7 +195,7 @@ def test_profile_at_noon_is_the_slit_convolved_with_the_disc() -> None:
         return (disc + dome) / (math.pi * (1 - u / 3))
 
     sensor = sensor_with(slit_row((0.0037,), 0.25, 16.0))
-    lit = sensor.lit(scene_of(np.array([[0.0, 0.0, 1.0]])))[0][:COLUMNS]
+    lit = sensor.lit(lit_by(np.array([[0.0, 0.0, 1.0]])))[0][:COLUMNS]
     nodes, shares = np.polynomial.legendre.leggauss(40)
     place = np.arange(COLUMNS)[:, None] - (COLUMNS - 1) / 2 + nodes / 2 - 0.0037 / PITCH_MM
     half = 0.125 / PITCH_MM
@@ -227,7 +218,7 @@ def test_pixels_are_the_exact_areas_of_the_other_kernel(aperture, angles, thickn
     nominal = sensor_with(mask, sun=SolarDisc(diameter_deg=0.0), axes=("x",), fill_factor=0.8)
     sensor = replace(nominal, detector=replace(nominal.detector, columns=256))
     sun = from_angles(np.array(angles[:1]), np.array(angles[1:]))
-    lit = sensor.lit(scene_of(sun))
+    lit = sensor.lit(lit_by(sun))
     low = (np.arange(256) - 128.0) * PITCH_MM
     half = HEIGHT_MM / 2
     boxes = np.column_stack(
@@ -261,14 +252,14 @@ def test_no_light_is_lost_anywhere_in_the_field(name: str) -> None:
             detector=replace(sensor.detector, columns=2 * sensor.detector.columns),
         )
         found, whole = (
-            s.lit(scene_of(sun)).reshape(len(sun), len(s.axes), -1).sum(axis=2)
+            s.lit(lit_by(sun)).reshape(len(sun), len(s.axes), -1).sum(axis=2)
             for s in (sensor, wide)
         )
         assert found == pytest.approx(whole, rel=1e-9), condition
         # diffracted light beside a slit's end is not known: no end comes near an array
         long = replace(sensor, camera=wide.camera, spectrum=SUNLIT_SILICON)
         short = replace(sensor, spectrum=SUNLIT_SILICON)
-        assert np.array_equal(short.lit(scene_of(sun)), long.lit(scene_of(sun))), condition
+        assert np.array_equal(short.lit(lit_by(sun)), long.lit(lit_by(sun))), condition
     ideal = replace(
         wide,
         camera=replace(
@@ -284,7 +275,7 @@ def test_no_light_is_lost_anywhere_in_the_field(name: str) -> None:
         sum(a.width_mm / math.cos(math.radians(a.rotation_deg)) for a in mask.apertures)
         / sensor.detector.pitch_mm
     )
-    caught = ideal.lit(scene_of(sun)).reshape(len(sun), len(ideal.axes), -1).sum(axis=2)
+    caught = ideal.lit(lit_by(sun)).reshape(len(sun), len(ideal.axes), -1).sum(axis=2)
     assert caught == pytest.approx(np.repeat(points[:, None] * open_px, len(ideal.axes), 1))
 
 

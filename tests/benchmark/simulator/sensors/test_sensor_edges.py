@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import nominal
 from scipy.special import fresnel
 
 from benchmark import datasets
@@ -30,10 +31,6 @@ from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 from benchmark.simulator.sensors.position_sensitive import LateralEffect, PositionSensor
 
 POINT = SolarDisc(diameter_deg=0.0)
-
-
-def nominal(name: str) -> Any:
-    return datasets.get(name).setups["nominal"].sensor
 
 
 def lit_by(*angles: tuple[float, float]) -> Scene:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import lit_by
 from scipy import integrate
 
 from benchmark.seeds import generator
@@ -20,7 +21,6 @@ from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import CurrentReadout, Quadrants
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.faces import CUBE, FaceSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 
@@ -29,10 +29,6 @@ IDEAL = CurrentReadout(
 )
 POINT = SolarDisc(diameter_deg=0.0)
 NO_DISCS = np.empty((0, 3))
-
-
-def lit_by(sun: np.ndarray) -> Scene:
-    return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)))
 
 
 def box(x0: float, x1: float, y0: float, y1: float) -> np.ndarray:

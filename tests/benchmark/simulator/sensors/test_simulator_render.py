@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 from bare_pixels import bare
-from numba import njit
+from ray_count import centroid, count_rays, dense_suns
+from scenes import incident
 from shadows import shadows
 
 from benchmark import datasets
@@ -43,64 +44,11 @@ def scene_of(sensor: FrameSensor, sun: np.ndarray) -> Scene:
     return Scene(sun, np.ones(len(sun)), np.zeros(len(sun)), origin)
 
 
-def incident(theta_deg: float, azimuth_deg: float) -> np.ndarray:
-    theta, azimuth = math.radians(theta_deg), math.radians(azimuth_deg)
-    across = math.sin(theta)
-    return np.array([[across * math.cos(azimuth), across * math.sin(azimuth), math.cos(theta)]])
-
-
-@njit
-def _depth(x, y, rim):
-    """How far inside an aperture a point lies, in pixels; negative outside."""
-    is_round, half_w, half_h, turn = rim
-    if is_round:
-        return half_w - math.sqrt(x * x + y * y)
-    c, s = math.cos(turn), math.sin(turn)
-    return min(half_w - abs(c * x + s * y), half_h - abs(c * y - s * x))
-
-
-@njit
-def _count_rays(corner, suns, rim, sub, rng):
-    """For every pixel, the share of randomly jittered rays that pass both rims, over the Sun."""
-    frame = np.zeros((SIZE, SIZE))
-    for k in range(suns.shape[0]):
-        low_x, low_y, up_x, up_y, weight = suns[k]
-        for row in range(SIZE):
-            for column in range(SIZE):
-                x, y = corner[0] + column + 0.5, corner[1] + row + 0.5
-                depth = min(_depth(x - low_x, y - low_y, rim), _depth(x - up_x, y - up_y, rim))
-                if abs(depth) > 0.75:  # farther from every rim than half a pixel's diagonal
-                    frame[row, column] += weight * (depth > 0)
-                    continue
-                hits = 0
-                for i in range(sub * sub):
-                    x = corner[0] + column + (i % sub + rng.random()) / sub
-                    y = corner[1] + row + (i // sub + rng.random()) / sub
-                    hits += (
-                        _depth(x - low_x, y - low_y, rim) > 0
-                        and _depth(x - up_x, y - up_y, rim) > 0
-                    )
-                frame[row, column] += weight * hits / sub**2
-    return frame
-
-
 def dense_ray_count(
     sun: np.ndarray, origin: np.ndarray, aperture: Aperture, thickness: float, glass: Any
 ) -> np.ndarray:
-    """Irradiance per pixel from rays traced one by one: Sun on a grid, angles, no shared code."""
-    radius, cells = math.radians(0.533 / 2), 31
-    grid = (np.arange(cells) + 0.5) / cells * 2 - 1
-    u, v = (axis.ravel() for axis in np.meshgrid(grid, grid))
-    keep = u**2 + v**2 <= 1
-    u, v = u[keep], v[keep]
-    weight = 1 - 0.6 * (1 - np.sqrt(1 - u**2 - v**2))
-    weight /= weight.sum()
-    up = np.array([0.0, 1.0, 0.0])
-    e1 = np.cross(up, sun)
-    e1 /= np.linalg.norm(e1)
-    e2 = np.cross(sun, e1)
-    rays = sun + np.sin(radius) * (u[:, None] * e1 + v[:, None] * e2)
-    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    """Irradiance per pixel from rays traced one by one, through glass by Snell and Fresnel."""
+    rays, weights = dense_suns(sun, 31)
     theta, azimuth = np.arccos(rays[:, 2]), np.arctan2(rays[:, 1], rays[:, 0])
     inner = np.arcsin(np.sin(theta) / glass[1]) if glass else theta
     depth = glass[0] if glass else 0.0
@@ -110,27 +58,14 @@ def dense_ray_count(
         rp = (np.tan(theta - inner) / np.tan(theta + inner)) ** 2
         passed = ((1 - rs) ** 2 + (1 - rp) ** 2) / 2
     low = (H_MM - thickness / 2 - depth) * np.tan(theta) + depth * np.tan(inner)
-    high = low + thickness * np.tan(theta)
-    direction = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
-    suns = np.column_stack(
-        [
-            low[:, None] * direction / PITCH_MM,
-            high[:, None] * direction / PITCH_MM,
-            weight * np.cos(theta) * passed,
-        ]
-    )
-    rim = (
-        aperture.shape == "round",
-        aperture.width_mm / 2 / PITCH_MM,
-        aperture.height_mm / 2 / PITCH_MM,
-        math.radians(aperture.rotation_deg),
-    )
-    return _count_rays(origin - 255.5 - 0.5, suns, rim, 12, np.random.default_rng(7))
-
-
-def centroid(frame: np.ndarray) -> np.ndarray:
-    y, x = np.mgrid[: frame.shape[0], : frame.shape[1]]
-    return np.array([(frame * x).sum(), (frame * y).sum()]) / frame.sum()
+    direction = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1) / PITCH_MM
+    far = (low, low + thickness * np.tan(theta))
+    rims = (one[:, None] * direction for one in far)
+    suns = np.column_stack([*rims, weights * np.cos(theta) * passed])
+    half_mm = (aperture.width_mm / 2, 0.0 if aperture.shape == "round" else aperture.height_mm / 2)
+    middle, half = 256.0 - origin, np.array(half_mm) / PITCH_MM
+    opening = np.array([[*middle, *half, math.radians(aperture.rotation_deg)]])
+    return count_rays((SIZE, SIZE), opening, suns, 12, np.random.default_rng(7))
 
 
 @pytest.mark.slow
