@@ -23,7 +23,8 @@ from survey_data.descriptor import descriptor
 def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Write a table in Markdown; cells are one line each."""
     lines = [header, ["---"] * len(header), *rows]
-    return "\n".join(f"| {' | '.join(map(_cell, line))} |" for line in lines)
+    cells = ([" ".join(cell.split()).replace("|", "\\|") for cell in line] for line in lines)
+    return "\n".join(f"| {' | '.join(line)} |" for line in cells)
 
 
 def command_line() -> str:
@@ -72,12 +73,9 @@ def published_figures() -> str:
 
 def definitions() -> str:
     """List every property of the assessment with its experiment and limits."""
-    rows = [
-        (one.name, one.measure, one.limits() or "not judged", one.why)
-        for one in DEFINITIONS.values()
-    ]
     header = ("property", "measured as (or why not)", "score", "why it is not judged elsewhere")
-    return table(header, rows)
+    every = DEFINITIONS.values()
+    return table(header, ((d.name, d.measure, d.limits() or "not judged", d.why) for d in every))
 
 
 #: What makes each part, by its name.
@@ -88,10 +86,6 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "published-figures": published_figures,
     "definitions": definitions,
 }
-
-
-def _cell(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")
 
 
 def _described(resource: Mapping[str, Any]) -> str:

@@ -50,18 +50,14 @@ _PART = re.compile(
 )
 
 
-class DocumentationError(ValueError):
-    """A page does not have the parts it should; the message names both."""
-
-
 def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
     """Return a page with its generated parts renewed.
 
-    DocumentationError where a part is missing, unknown, or there twice.
+    ValueError where a part is missing, unknown, or there twice.
     """
     found = [match["name"] for match in _PART.finditer(text)]
     if sorted(found) != sorted(parts):
-        raise DocumentationError(
+        raise ValueError(
             f"{page}: expected one generated part each of {', '.join(sorted(parts))}; "
             f"found {', '.join(sorted(found)) or 'none'}"
         )
@@ -73,9 +69,10 @@ def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
 
 def regenerate(root: Path = ROOT, *, write: bool = True) -> list[str]:
     """Renew every page and file of a checkout; return the names of those that were behind."""
-    made: dict[str, Make] = {page: partial(_renewed, page, root) for page in PAGES}
-    made |= {page: partial(_rerun, page, root) for page in RUN}
-    made |= WHOLE
+    texts = {page: (root / page).read_text("utf-8") for page in (*PAGES, *RUN)}
+    made: dict[str, Make] = dict(WHOLE)
+    made |= {page: partial(renew_parts, page, texts[page], parts) for page, parts in PAGES.items()}
+    made |= {page: partial(_rerun, page, texts[page]) for page in RUN}
     behind = {}
     with console_progress("documenting") as report:
         for done, (name, make) in enumerate(made.items()):
@@ -90,9 +87,7 @@ def regenerate(root: Path = ROOT, *, write: bool = True) -> list[str]:
 
 def main(arguments: list[str] | None = None) -> int:
     """Renew the pages, or with --check only say which are behind (exit code 1)."""
-    parser = argparse.ArgumentParser(
-        prog="python -m api.docs.documentation", description=main.__doc__
-    )
+    parser = argparse.ArgumentParser("python -m api.docs.documentation", description=main.__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing")
     options = parser.parse_args(arguments)
     behind = regenerate(write=not options.check)
@@ -102,13 +97,9 @@ def main(arguments: list[str] | None = None) -> int:
     return 1 if behind and options.check else 0
 
 
-def _renewed(page: str, root: Path) -> str:
-    return renew_parts(page, (root / page).read_text("utf-8"), PAGES[page])
-
-
-def _rerun(page: str, root: Path) -> str:
+def _rerun(page: str, text: str) -> str:
     with temporary_directory() as scratch:
-        return rerun(page, (root / page).read_text("utf-8"), scratch)
+        return rerun(page, text, scratch)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ _PLACES = ("/docs", "/experiments", "/openapi.json", "/bibliography")
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register with Sphinx."""
-    app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
+    app.add_html_math_renderer("mathml", (_draw, None), (_draw, None))
     app.connect("source-read", _fill)
     app.connect("doctree-read", lambda _app, document: link_names(document))
     app.connect("build-finished", _finish)
@@ -96,12 +96,8 @@ def _finish(app: Sphinx, error: Exception | None) -> None:
             finish_page(page, Path(app.outdir))
 
 
-def _inline(translator: Any, node: nodes.math) -> None:
-    translator.body.append(mathml(node.astext()))
-    raise nodes.SkipNode
-
-
-def _block(translator: Any, node: nodes.math_block) -> None:
-    drawn = mathml(node.astext(), block=True)
-    translator.body.append(f'<div class="equation">{drawn}</div>\n')
+def _draw(translator: Any, node: nodes.math | nodes.math_block) -> None:
+    block = isinstance(node, nodes.math_block)
+    drawn = mathml(node.astext(), block=block)
+    translator.body.append(f'<div class="equation">{drawn}</div>\n' if block else drawn)
     raise nodes.SkipNode

@@ -14,9 +14,7 @@ from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.metrics.score import is_available
 from benchmark.plot_style import svg
 from registry.fidelity.grading import tally_text
-from registry.taxonomy import Architecture
-from survey_data.hardware import hardware
-from survey_data.reported import reported_accuracies
+from survey_data.products import built_sensors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -107,7 +105,14 @@ def figure() -> Figure:
         ends = [row["bound_deg"], row["own_error_deg"], _first_deg(row)]
         axes.plot(ends, [height] * 3, color="#c5ccd3", linewidth=1.2)
         mark("bound", ends[:1], height)
-        built = built_sensors().get((row["detector"], row["mask"]), ())
+        # as published, root mean squares; those read on a page: what is recalled is left out
+        built = [
+            one.accuracy_rms_deg
+            for one in built_sensors().values()
+            if (one.detector, one.mask) == (row["detector"], row["mask"])
+            and one.accuracy_rms_deg is not None
+            and one.basis != "recalled"
+        ]
         mark("built", [error for error in built if error >= row["bound_deg"]], height)
         mark("built", [error for error in built if error < row["bound_deg"]], height, "none")
         used = [other["own_error_deg"] for other in _boards()[row["dataset"]] if other["studies"]]
@@ -115,14 +120,10 @@ def figure() -> Figure:
         mark("best", ends[1:2], height)
         mark("flight", ends[2:], height)
     axes.set_xscale("log")
-    axes.set_yticks(
-        range(len(rows)), [f"{row['detector']}, {row['mask']}" for row in rows], fontsize="small"
-    )
+    names = [f"{row['detector']}, {row['mask']}" for row in rows]
+    axes.set_yticks(range(len(rows)), names, fontsize="small")
     axes.set_ylim(-0.8, len(rows) - 0.2)
-    axes.set_xlabel(
-        f"Error of the direction to the Sun, deg\n{_OTHER}",
-        fontsize="small",
-    )
+    axes.set_xlabel(f"Error of the direction to the Sun, deg\n{_OTHER}", fontsize="small")
     axes.grid(axis="x", color="#e3e7eb")
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
@@ -136,20 +137,6 @@ def figure() -> Figure:
 def _first_deg(row: Row) -> float:
     """Return the error in flight, or the own error of what was not flown; large for neither."""
     return float(row["flight_error_deg"] or row["own_error_deg"] or 1e9)
-
-
-@cache
-def built_sensors() -> Mapping[Architecture, Sequence[float]]:
-    """Accuracies of built sensors as root mean squares, degrees, by their detector and mask.
-
-    Those read on a page; what is recalled is left out.
-    """
-    found: dict[Architecture, list[float]] = {}
-    for sensor in hardware().values():
-        if sensor.accuracy_deg is not None and sensor.basis != "recalled":
-            figure = reported_accuracies("accuracy", sensor.accuracy_deg, sensor.accuracy_kind)
-            found.setdefault((sensor.detector, sensor.mask), []).append(figure.rms_deg)
-    return found
 
 
 @cache

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from api.docs import documentation
-from api.docs.documentation import DocumentationError, regenerate, renew_parts
+from api.docs.documentation import regenerate, renew_parts
 
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
@@ -43,5 +43,5 @@ def test_what_is_altered_is_noticed_and_renewed(
 def test_a_part_that_is_missing_unknown_or_there_twice_is_named(
     text: str, parts: tuple[str, ...]
 ) -> None:
-    with pytest.raises(DocumentationError, match=r"page\.md: expected"):
+    with pytest.raises(ValueError, match=r"page\.md: expected"):
         renew_parts("page.md", text, {name: lambda: "" for name in parts})

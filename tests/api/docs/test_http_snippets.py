@@ -11,7 +11,6 @@ SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), 
 
 @pytest.fixture(scope="module")
 def address(atlas, serve):
-    # the application has loaded what it answers, or does with its first answer
     with serve(atlas.app) as connection:
         yield f"http://{connection.host}:{connection.port}"
 

@@ -26,9 +26,7 @@ Built = tuple[Path, subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope="module")
-def built(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> tuple[Path, subprocess.CompletedProcess[str]]:
+def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     """The site, built by the command in a process of its own."""
     out = tmp_path_factory.mktemp("guide") / "site"
     done = subprocess.run(
@@ -61,9 +59,7 @@ def test_the_site_is_built_without_a_warning(built: Built) -> None:
 
 
 @pytest.mark.slow
-def test_no_page_loads_anything_from_elsewhere_or_has_a_script_of_its_own(
-    built: Built,
-) -> None:
+def test_no_page_loads_anything_from_elsewhere_or_has_a_script_of_its_own(built: Built) -> None:
     out, _ = built
     loaded = 0
     for page in out.rglob("*.html"):
@@ -120,7 +116,6 @@ def test_the_site_of_changed_pages_is_another_and_the_oldest_are_let_go(
         assert site.keep() == [], "built once"
     assert len(set(places)) == len(places)
     assert sorted(path.is_dir() for path in places) == [False] * 2 + [True] * site.KEPT
-    assert not places[0].is_dir()
 
 
 @pytest.mark.slow
@@ -135,7 +130,7 @@ def test_every_page_leads_back_to_the_atlas_and_what_it_names_to_its_page(
         links |= dict.fromkeys(found, page.name)
     kinds = {link.split("/")[1] for link in links}
     assert {"algorithms", "datasets", "claims", "studies"} <= kinds
-    assert sum(link.startswith("/algorithms/") for link in links) > 50
+    assert sum(link.startswith("/algorithms/") for link in links) > 40
     for link, page_name in links.items():
         response = atlas.get(link, accept="text/html, */*;q=0.8")
         assert response.status_code == 200, (page_name, link)
