@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 import urllib.request
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
@@ -27,30 +27,36 @@ from survey_data import facts_manifest
 from survey_data.descriptor import DATA_DIRECTORY
 
 ROOT = Path(__file__).resolve().parents[3]
-SERVE = (sys.executable, "-m", "api.cli.command_line", "serve")
+
+
+@contextmanager
+def serving(*options, **popen):
+    """`sunatlas serve` in a process of its own, and the URL that it prints."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "api.cli.command_line", "serve", "--port", "0", *options],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **popen,
+    ) as process:
+        try:
+            assert process.stdout is not None
+            yield process, process.stdout.readline().split()[3]
+        finally:
+            process.kill()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_serve_prints_where_it_answers_and_ends_with_the_code_of_the_signal(number, code):
-    with subprocess.Popen(
-        [*SERVE, "--port", "0"],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        # tests started in a shell's background ignore interrupts, and what they start does too
-        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509 - one thread
-    ) as process:
-        try:
-            assert process.stdout is not None
-            url = process.stdout.readline().split()[3]
-            with urllib.request.urlopen(f"{url}/healthz", timeout=600) as answer:
-                health = json.load(answer)
-            process.send_signal(number)
-            _, said = process.communicate(timeout=600)
-        finally:
-            process.kill()
+    # tests started in a shell's background ignore interrupts, and what they start does too
+    heeding = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with serving(preexec_fn=heeding) as (process, url):
+        with urllib.request.urlopen(f"{url}/healthz", timeout=600) as answer:
+            health = json.load(answer)
+        process.send_signal(number)
+        _, said = process.communicate(timeout=600)
     assert health["status"] == "ok"
     assert health["studies"] == 129
     assert process.returncode == code
@@ -115,54 +121,29 @@ def test_an_answer_on_its_way_does_not_hold_up_the_end(workers, code, says):
         b"POST /v1/calibrations HTTP/1.1\r\nHost: a\r\nContent-Length: %d\r\n"
         b"Content-Type: multipart/form-data; boundary=a\r\n\r\n" % len(body)
     )
-    with subprocess.Popen(
-        [*SERVE, "--port", "0", "--workers", str(workers)],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    ) as process:
-        try:
-            assert process.stdout is not None
-            url = process.stdout.readline().split()[3]
-            urllib.request.urlopen(f"{url}/healthz", timeout=600).close()
-            with socket.create_connection(url.removeprefix("http://").split(":")) as plug:
-                plug.sendall(head + body)
-                time.sleep(0.5)  # it is being calibrated
-                process.send_signal(signal.SIGTERM)
-                _, said = process.communicate(timeout=600)
-                assert not plug.recv(1), "no answer, whole or half"
-        finally:
-            process.kill()
+    with serving("--workers", str(workers), start_new_session=True) as (process, url):
+        urllib.request.urlopen(f"{url}/healthz", timeout=600).close()
+        with socket.create_connection(url.removeprefix("http://").split(":")) as plug:
+            plug.sendall(head + body)
+            time.sleep(0.5)  # it is being calibrated
+            process.send_signal(signal.SIGTERM)
+            _, said = process.communicate(timeout=600)
+            assert not plug.recv(1), "no answer, whole or half"
     assert (process.returncode, said) == (code, says)
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are read from /proc")
 def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
-    command = [*SERVE, "--port", "0", "--workers", "2", "--access-log"]
-    with subprocess.Popen(
-        command,
-        cwd=ROOT,
-        env={**os.environ, "TMPDIR": str(tmp_path)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    ) as process:
-        try:
-            assert process.stdout is not None
-            url = process.stdout.readline().split()[3]
-            for _ in range(40):
-                with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
-                    assert answer.status == 200
-            with urllib.request.urlopen(f"{url}/metrics", timeout=600) as answer:
-                text = answer.read().decode()
-            process.send_signal(signal.SIGTERM)
-            out, said = process.communicate(timeout=600)
-        finally:
-            process.kill()
+    options, own = ("--workers", "2", "--access-log"), {**os.environ, "TMPDIR": str(tmp_path)}
+    with serving(*options, env=own, start_new_session=True) as (process, url):
+        for _ in range(40):
+            with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
+                assert answer.status == 200
+        with urllib.request.urlopen(f"{url}/metrics", timeout=600) as answer:
+            text = answer.read().decode()
+        process.send_signal(signal.SIGTERM)
+        out, said = process.communicate(timeout=600)
     wanted = re.compile(r"sunatlas_http_requests_total\{.*taxonomy.*\} 40\.0")
     assert wanted.search(text)
     assert out.count('"GET /v1/taxonomy HTTP/1.1" 200') == 40

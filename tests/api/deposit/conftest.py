@@ -10,9 +10,16 @@ from pathlib import Path
 import pytest
 
 from api.deposit.bundle import Bundle, build
+from tests.api.deposit import small_bundle
 
 #: Data sets whose samples go into the bundles of tests: one of frames, one of currents.
 FRAMES = ("cmos-single-aperture", "pd-slit")
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    """A bundle of nearly nothing, which a test may change."""
+    return small_bundle.make(tmp_path / "bundle")
 
 
 @pytest.fixture(scope="session")

@@ -18,19 +18,17 @@ from api.deposit.against_record import differences
 from api.deposit.database import DATABASE
 from api.deposit.package import DESCRIPTOR
 from api.metadata.identity import identity
-from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_forms import PARQUET
 
 Problems = dict[str, str]
 
 
 @pytest.fixture
-def small(tmp_path: Path) -> Path:
-    bundle = small_bundle.make(tmp_path / "bundle")
-    package = json.loads((bundle / DESCRIPTOR).read_text("utf-8"))
+def small(small: Path) -> Path:
+    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
     package["version"] = identity().version
-    (bundle / DESCRIPTOR).write_text(json.dumps(package))
-    return bundle
+    (small / DESCRIPTOR).write_text(json.dumps(package))
+    return small
 
 
 @pytest.fixture

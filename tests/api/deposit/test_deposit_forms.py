@@ -18,15 +18,9 @@ from api.deposit.forms import write_other_forms
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import UNSEEN, verify
 from files.checksums import sha256
-from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_verification import agree, change
 
 TABLE, PARQUET = "benchmark/one.csv", "parquet/one.parquet"
-
-
-@pytest.fixture
-def small(tmp_path):
-    return small_bundle.make(tmp_path / "bundle")
 
 
 def signed_anew(bundle: Path) -> None:

@@ -15,13 +15,7 @@ from api.deposit.crate import CRATE
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
 from files.checksums import CHECKSUMS, write_checksums
-from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_verification import agree
-
-
-@pytest.fixture
-def small(tmp_path: Path) -> Path:
-    return small_bundle.make(tmp_path / "bundle")
 
 
 def without(bundle: Path, name: str) -> None:

@@ -16,7 +16,6 @@ from files.checksums import (
     write_checksums,
 )
 from files.reading import FileRefusedError
-from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit import files
 
 ELSEWHERE = "http://127.0.0.1:9/elsewhere"
@@ -37,11 +36,6 @@ def offline(monkeypatch):
     monkeypatch.setattr(socket, "create_connection", refuse)
     yield asked
     assert asked == []
-
-
-@pytest.fixture
-def small(tmp_path):
-    return small_bundle.make(tmp_path / "bundle")
 
 
 def change(bundle, edit, name=DESCRIPTOR):

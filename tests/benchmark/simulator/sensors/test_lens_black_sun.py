@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.datasets import Samples, samples_hash
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import from_angles, tangent_axes
@@ -158,20 +156,6 @@ def test_the_bound_is_what_a_fit_of_the_pictures_reaches() -> None:
         errors[n] = np.linalg.solve(fisher, slopes.T @ rest)[:2]
     reached = np.degrees(np.sqrt(np.sum(errors.var(axis=0, ddof=1))))
     assert reached == pytest.approx(bound.angle_deg[0], rel=0.1)
-
-
-def test_batches_do_not_change_the_pictures() -> None:
-    for condition in ("nominal", "saturation-clouds"):
-        sensor, pattern = sensor_of(condition), PRESET.fixed_pattern(condition)
-        scene = scene_of(SUNS)
-        digests = set()
-        for cuts in ((0, 4), (0, 1, 3, 4)):
-            streams = NoiseStreams.named("test", "batches")
-            frames = np.concatenate(
-                [sensor.observe(scene.part(a, b), pattern, streams) for a, b in pairwise(cuts)]
-            )
-            digests.add(samples_hash(Samples(frames, scene.sun, scene.origin_px)))
-        assert len(digests) == 1
 
 
 def test_a_pixel_that_inverts_before_it_saturates_is_refused() -> None:
