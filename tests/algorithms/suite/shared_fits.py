@@ -42,9 +42,8 @@ class Witnessed:
     given: Any
 
 
-#: By class, parameters and content of the calibration: the fit, and the answers of a second one.
+#: By class, parameters and content of the calibration.
 _FITS: dict[tuple[Any, ...], Witnessed] = {}
-_AGAIN: dict[tuple[Any, ...], Floats] = {}
 
 
 def witnessed(model: Any, cal: Any) -> Witnessed:
@@ -75,14 +74,11 @@ def learnt_again(model: Any, cal: Any) -> Floats:
     Where they are those of the first to the last bit, fits are deterministic, they forget what
     was learnt before, and pickling lost nothing of what a fit reads.
     """
-    key = _key(model, cal)
-    if key not in _AGAIN:
-        again = pickle.loads(pickle.dumps(type(model)(**parameters(model))))
-        half = cal.of(slice(None, None, 2))
-        again.fit(half.features, half.sun, half.context)
-        again.fit(cal.features, cal.sun, cal.context)
-        _AGAIN[key] = again.predict(cal.features, cal.context)
-    return _AGAIN[key].copy()
+    again = pickle.loads(pickle.dumps(type(model)(**parameters(model))))
+    half = cal.of(slice(None, None, 2))
+    again.fit(half.features, half.sun, half.context)
+    again.fit(cal.features, cal.sun, cal.context)
+    return again.predict(cal.features, cal.context)
 
 
 def _public(model: Any) -> frozenset[str]:
