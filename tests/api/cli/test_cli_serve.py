@@ -166,22 +166,14 @@ def test_a_reload_replaces_both_workers_and_every_question_meanwhile_is_answered
                     found.add(child)
         return found
 
-    command = [*SERVE, "--port", "0", "--workers", "2"]
-    with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, text=True, start_new_session=True
-    ) as process:
-        try:
-            assert process.stdout is not None
-            url = process.stdout.readline().split()[3]
-            urllib.request.urlopen(f"{url}/healthz", timeout=600).close()
-            first = workers()
-            assert len(first) == 2
-            process.send_signal(signal.SIGHUP)
-            while first & (now := workers()) or len(now) < 2:
-                with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
-                    assert answer.status == 200
-        finally:
-            process.kill()
+    with serving("--workers", "2", start_new_session=True) as (process, url):
+        urllib.request.urlopen(f"{url}/healthz", timeout=600).close()
+        first = workers()
+        assert len(first) == 2
+        process.send_signal(signal.SIGHUP)
+        while first & (now := workers()) or len(now) < 2:
+            with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
+                assert answer.status == 200
     deadline = time.monotonic() + 60
     while running(process.pid):
         assert time.monotonic() < deadline, "workers outlive the process that started them"
