@@ -28,12 +28,13 @@ _TOO_MANY = "Too many connections or requests of this address at once.\n"
 class _Connection(h11.Connection):
     """Refuses bodies in chunks: a chunk of one byte costs as much as one of 10 kB."""
 
-    unmeasured = False
+    asked = unmeasured = False
 
     def next_event(self) -> Any:
         """Return the next event, as h11 does."""
         event = super().next_event()
         if isinstance(event, h11.Request):
+            self.asked = True
             self.unmeasured = any(name == b"transfer-encoding" for name, _ in event.headers)
             if self.unmeasured:
                 raise h11.RemoteProtocolError(_NO_LENGTH)
@@ -70,7 +71,7 @@ class BoundedProtocol(H11Protocol):
 
     def shutdown(self) -> None:
         """End with the server; a first question may be on its way, which a reset would answer."""
-        if self.cycle is None:
+        if not self._bounded.asked:
             self.loop.call_later(_LAST_S, super().shutdown)
         else:
             super().shutdown()
