@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import partial
 
 import pytest
 from starlette.types import Message
 
 from api.service.problems import Problem
-from api.web import requests
+from api.web import calibrations, requests
 from api.web.calibrations import sent
 from api.web.requests import StrictRequest
 from calibrate.uploaded import Upload
@@ -76,6 +78,18 @@ def test_forty_parts_are_taken() -> None:
     assert (len(fields), files) == (40, ())
     name = 48 * b";" + b".csv"
     assert form_of([body(FILE % (name, b"1"))]) == ({}, (Upload(name.decode(), b"1"),))
+
+
+def test_memory_of_a_form_goes_back_to_the_system_read_or_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    released: list[bytes] = []
+    monkeypatch.setattr(calibrations, "_REST_S", 0.0)
+    for whole in (body(FILE % (b"b.csv", b"1")), b"no form"):
+        monkeypatch.setattr(calibrations, "release_free_memory", partial(released.append, whole))
+        with suppress(Problem):
+            form_of([whole])
+    assert released == [body(FILE % (b"b.csv", b"1")), b"no form"]
 
 
 @pytest.mark.parametrize("coding", ["gzip", "br, identity"])
