@@ -62,7 +62,7 @@ def test_what_is_no_plain_text_is_refused_with_its_line(
         ('{"a": NaN}', "expected a finite number, got NaN"),
         ("[-Infinity]", "got -Infinity"),
         ("[1e999]", "got 1e999"),
-        ('{"a": 1,\n}', "line 2: not JSON"),
+        ('{"a": 1\n "b": 2}', "line 2: not JSON"),
         ("[" * 100_000 + "]" * 100_000, "nested too deeply"),
     ],
 )

@@ -14,6 +14,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
+from weakref import finalize
 
 _WEIGHTS = "8.0, 4.0, 2.0, 1.0, 4.0"  # of the columns
 _LIKE = 0.75  # similarity of a word that was probably meant (`difflib`)
@@ -108,6 +109,7 @@ class Index:
     @cached_property
     def _table(self) -> sqlite3.Connection:
         table = sqlite3.connect(":memory:", check_same_thread=False)
+        finalize(self, table.close)  # which Python 3.13 would have closed before it goes
         table.execute(_TABLE)
         table.executemany(
             "INSERT INTO entry (rowid, name, title, words, text, parts) VALUES (?, ?, ?, ?, ?, ?)",
