@@ -21,10 +21,10 @@ FLOWS = ("error", "performance", "cross-analysis", "task", "aggregate")
 def test_every_flow_has_the_studies_with_both_values(
     name: str, values: Values, sensors: dict[str, set[tuple[str, str]]]
 ) -> None:
-    rows = figure(name, facts()).rows
+    drawn = figure(name, facts())
     links = {
         ((row["level"], row["value"]), (row["next_level"], row["next_value"])): set(row["studies"])
-        for row in rows
+        for row in drawn.rows
         if row["next_level"]
     }
     expected = {}
@@ -34,6 +34,12 @@ def test_every_flow_has_the_studies_with_both_values(
         }
         expected |= {pair: studies_with(values, sensors, *pair) for pair in pairs}
     assert links == {pair: keys for pair, keys in expected.items() if keys}
+    said = [line.split() for line in drawn.text if line.startswith("Widest flow from ")]
+    widest = [
+        max(len(keys) for (source, _), keys in links.items() if source[0] == level)
+        for level in LEVELS[name][:-1]
+    ]
+    assert [int(words[-2]) for words in said] == widest
 
 
 def test_arcs_of_the_sunburst_hold_the_studies_of_their_models(values: Values) -> None:
