@@ -67,20 +67,32 @@ def draw(directory: Path, number: int, seed: int) -> None:
 
 
 def tests_of(module: str) -> list[Path]:
-    """Return the test files that import a module, then those of its folder's tests."""
+    """Return the test files that import a module, then those of its folder's tests.
+
+    Of a module that no test imports, such as a kernel, those that import one that does.
+    """
+    every = [p for p in sorted((ROOT / "tests").rglob("test_*.py")) if p.name not in _AT_ANY_CHANGE]
+    found = _importing(module, every)
+    if not found:
+        for user in _importing(
+            module, [p for floor in FLOORS for p in (ROOT / floor).rglob("*.py")]
+        ):
+            found += _importing(user.relative_to(ROOT).as_posix(), every)
+    folder = Path("tests", module).parent
+    while not (ROOT / folder).is_dir():
+        folder = folder.parent
+    beside = [path for path in every if path.is_relative_to(ROOT / folder)]
+    return list(dict.fromkeys(found + beside))
+
+
+def _importing(module: str, files: list[Path]) -> list[Path]:
     package, _, name = module.removesuffix(".py").replace("/", ".").rpartition(".")
     imports = re.compile(
         rf"^\s*(?:from {package}\.{name} import|import {package}\.{name}\b"
         rf"|from {package} import .*\b{name}\b)",
         re.MULTILINE,
     )
-    every = [p for p in sorted((ROOT / "tests").rglob("test_*.py")) if p.name not in _AT_ANY_CHANGE]
-    found = [path for path in every if imports.search(path.read_text("utf-8"))]
-    folder = Path("tests", module).parent
-    while not (ROOT / folder).is_dir():
-        folder = folder.parent
-    beside = [path for path in every if path.is_relative_to(ROOT / folder) and path not in found]
-    return found + beside
+    return [path for path in files if imports.search(path.read_text("utf-8"))]
 
 
 def test() -> int:
