@@ -47,16 +47,8 @@ _KEY = (*_PIPELINE, "unit")
 _DATASET = {"dataset": ("datasets", "name")}
 _PARTS = {**_DATASET, "extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
 _RANKED = (
-    *(
-        "rank",
-        "group",
-        "tied",
-        *_PIPELINE,
-        "own_error_deg",
-        "own_se",
-        "on_bench_deg",
-        "on_bench_basis",
-    ),
+    *("rank", "group", "tied", *_PIPELINE),
+    *("own_error_deg", "own_se", "on_bench_deg", "on_bench_basis"),
     *("twin_of", "folded", "rms_deg", "low_deg", "high_deg", "unit_rms_deg"),
 )
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion
+from api.schema.base import Listing, Shape, SortedQuestion, example
 from api.schema.parameters import Several, several
 from api.schema.words import Detector, Mask
 
@@ -55,9 +55,7 @@ class Protocol(Shape):
 class AdviceQuery(SortedQuestion, rows=Advice):
     """Which pieces of advice."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"requirement": ["task"], "mask": ["Slit"], "limit": 1}]}
-    )
+    model_config = example(requirement=["task"], mask=["Slit"], limit=1)
 
     requirement: Several[Requirement] = several("Only advice for this kind.")
     detector: Several[Detector] = several("Only advice that names this detector.")

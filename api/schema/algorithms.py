@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion
+from api.schema.base import Listing, Shape, SortedQuestion, example
 from api.schema.parameters import (
     GIVEN,
 )
@@ -42,6 +42,6 @@ class Algorithms(Listing):
 class AlgorithmsQuery(SortedQuestion, rows=Algorithm):
     """Which implementations."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
+    model_config = example(role="extractor", limit=1)
 
     role: Annotated[Role | None, GIVEN] = Field(None, description="Only this role.")

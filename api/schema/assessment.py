@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion
+from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion, example
 from api.schema.parameters import (
     Several,
     several,
@@ -19,7 +19,7 @@ Agreement = Literal["agrees", "near", "opposed", "not judged", "not measured"]
 class AssessmentQuery(TableQuestion):
     """Which methods."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"method": ["BCTM"]}]})
+    model_config = example(method=["BCTM"])
 
     method: Several[MethodName] = several("Only this method of the survey's table.")
 
@@ -131,13 +131,7 @@ class Assessment(Shape):
 class SweepsQuery(SortedQuestion, rows=Sweep):
     """Which sweeps."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {"series": ["disc"], "sweep": ["noise"], "extractor": ["bctm"], "limit": 1}
-            ]
-        }
-    )
+    model_config = example(series=["disc"], sweep=["noise"], extractor=["bctm"], limit=1)
 
     series: Several[Series] = several("Only this feature.")
     sweep: Several[SweepName] = several("Only this sweep.")

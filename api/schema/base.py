@@ -14,6 +14,11 @@ from api.schema.vocabulary import meaning
 from survey_data.editions import Choice
 
 
+def example(**asked: Any) -> ConfigDict:
+    """Return the settings of a question with an example of it, for its documentation."""
+    return ConfigDict(json_schema_extra={"examples": [asked]})
+
+
 class Described(BaseModel):
     """A model whose members are described: by itself, or by the vocabulary."""
 
@@ -129,7 +134,7 @@ class CitedQuestion(TableQuestion):
 class OnlyFormat(TableQuestion):
     """The query of a table that takes no other parameters."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
+    model_config = example()
 
 
 class Selected(Shape):

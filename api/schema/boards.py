@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion, TableQuestion
-from api.schema.parameters import (
-    OneOf,
-    Several,
-    several,
-)
+from api.schema.base import Listing, Shape, SortedQuestion, TableQuestion, example
+from api.schema.parameters import OneOf, Several, several
 from api.schema.words import Detector, Mask
 from benchmark.leaderboard.overview import ROLES
 from benchmark.leaderboard.partial_answers import FINER
@@ -22,9 +18,7 @@ RoleName = Annotated[str, OneOf(lambda: ROLES)]
 class OverviewQuery(TableQuestion):
     """Which parts, counted on which boards."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"role": ["extractor"], "detector": ["QPD"]}]}
-    )
+    model_config = example(role=["extractor"], detector=["QPD"])
 
     role: Several[RoleName] = several("Only parts of this role.")
     detector: Several[Detector] = several("Only data sets with this detector.")
@@ -140,7 +134,7 @@ class Overview(Shape):
 class ArchitecturesQuery(SortedQuestion, rows=BestOfArchitecture):
     """Which architectures."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"detector": ["QPD"], "limit": 1}]})
+    model_config = example(detector=["QPD"], limit=1)
 
     detector: Several[Detector] = several("Only this detector.")
     mask: Several[Mask] = several("Only this mask.")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion
+from api.schema.base import Listing, Shape, SortedQuestion, example
 from api.schema.parameters import GIVEN, Several, several
 from api.schema.words import ClaimVerdict
 
@@ -105,7 +105,7 @@ class ClaimDetail(Claim):
 class ClaimsQuery(SortedQuestion, rows=ClaimRow):
     """Which claims."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"q": "polynomial order"}]})
+    model_config = example(q="polynomial order")
 
     verdict: Several[ClaimVerdict] = several("Only claims with this verdict.")
     q: Annotated[

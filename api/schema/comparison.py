@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, TypeVar
 
-from pydantic import AfterValidator, ConfigDict, Field
+from pydantic import AfterValidator, Field
 
-from api.schema.base import OfEdition, Shape, TableQuestion
+from api.schema.base import OfEdition, Shape, TableQuestion, example
 from api.schema.parameters import GIVEN, OneOf
 from api.schema.words import Condition, DatasetName
 from benchmark.leaderboard.partial_answers import FINER
@@ -34,15 +34,8 @@ Pipeline = Annotated[str, Field(min_length=3, max_length=120)]
 class CompareQuery(OfEdition, TableQuestion):
     """What is compared: pipelines on a data set, or architectures."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {
-                    "dataset": "cmos-single-aperture",
-                    "pipeline": ["bctm:spm", "mirror:homography"],
-                }
-            ]
-        }
+    model_config = example(
+        dataset="cmos-single-aperture", pipeline=["bctm:spm", "mirror:homography"]
     )
 
     architecture: InOrder[Architecture] = Field(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion
+from api.schema.base import Listing, Shape, SortedQuestion, example
 from api.schema.parameters import (
     Several,
     several,
@@ -78,9 +78,7 @@ class Curves(Listing):
 class CurvesQuery(SortedQuestion, rows=CurveRow):
     """Which learning curves."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"dataset": ["cmos-single-aperture"], "limit": 1}]}
-    )
+    model_config = example(dataset=["cmos-single-aperture"], limit=1)
 
     dataset: Several[DatasetName] = several("Only this data set.")
     extractor: Several[ExtractorName] = several("Only this extractor.")

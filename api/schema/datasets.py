@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion
+from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion, example
 from api.schema.parameters import (
     Several,
     several,
@@ -58,9 +58,7 @@ class Dataset(OpenShape):
 class RealismQuery(TableQuestion):
     """Which data sets."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"dataset": ["qpd-single-aperture"]}]}
-    )
+    model_config = example(dataset=["qpd-single-aperture"])
 
     dataset: Several[DatasetName] = several("Only this data set.")
 
@@ -161,4 +159,4 @@ class Datasets(Listing):
 class DatasetsQuery(SortedQuestion, rows=Dataset):
     """Which page of the data sets."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+    model_config = example(limit=1)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Shape
+from api.schema.base import Shape, example
 from api.schema.flows import LeftOut
 from api.schema.parameters import OneOf
 from api.schema.studies import StudyFilters
@@ -20,19 +20,13 @@ ROWS, COLUMNS = "detector", "mask"
 class FigureQuery(StudyFilters):
     """Of which studies."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"detector": ["Event"]}]})
+    model_config = example(detector=["Event"])
 
 
 class MatrixQuery(StudyFilters):
     """Of which studies, by which two attributes or what their values imply."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {"rows": "detector", "columns": "mask", "detector": ["PSD"], "mask": ["Lens"]}
-            ]
-        }
-    )
+    model_config = example(rows="detector", columns="mask", detector=["PSD"], mask=["Lens"])
 
     rows: Level = Field(ROWS, description="Attribute of the rows.")
     columns: Level = Field(

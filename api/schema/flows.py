@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Shape
+from api.schema.base import Shape, example
 from api.schema.parameters import Flag
 from api.schema.studies import StudyFilters
 
@@ -14,9 +14,7 @@ from api.schema.studies import StudyFilters
 class FlowsQuery(StudyFilters):
     """Which studies flow, and how they are counted."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"error": ["Electrical"], "detector": ["CMOS"]}]}
-    )
+    model_config = example(error=["Electrical"], detector=["CMOS"])
 
     counting: Literal["studies", "fractional"] = Field(
         "studies",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, TableQuestion
+from api.schema.base import Listing, Shape, TableQuestion, example
 from api.schema.parameters import (
     DEFAULT_PAGE,
     FIELDS,
@@ -25,9 +25,7 @@ from benchmark.results.samples import OUTCOMES
 class SampleErrorsQuery(TableQuestion):
     """Which errors of a data set."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"extractor": ["weighted-spots"], "unit": 0, "limit": 1}]}
-    )
+    model_config = example(extractor=["weighted-spots"], unit=0, limit=1)
 
     extractor: Several[ExtractorName] = several("Only this extractor.")
     model: Several[ModelName] = several("Only this model.")

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion
+from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion, example
 from api.schema.parameters import (
     DEFAULT_PAGE,
     GIVEN,
@@ -27,7 +27,7 @@ FIELD_EDGES = tuple(str(edge) for edge in EDGES_DEG[1:])
 class WholeLeaderboardQuery(TableQuestion):
     """Which part of the leaderboard of all data sets."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+    model_config = example(limit=1)
 
     whole: Flag = Field(default=False, description="Return all rows at once (over 10 MB).")
     limit: Limit = DEFAULT_PAGE
@@ -213,7 +213,7 @@ class LeaderboardRows(Listing):
 class ScoresQuery(SortedQuestion, rows=Score):
     """Which scores."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+    model_config = example(limit=1)
 
     dataset: Several[DatasetName] = several("Only this data set.")
     condition: Several[Condition] = several("Only this condition.")
@@ -224,7 +224,7 @@ class ScoresQuery(SortedQuestion, rows=Score):
 class LeaderboardQuery(SortedQuestion, rows=LeaderboardRow):
     """Which rows of a data set's leaderboard, and what they are ranked by."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+    model_config = example(limit=1)
 
     condition: Several[Condition] = several("Only this condition.")
     extractor: Several[ExtractorName] = several("Only this extractor.")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.schema.base import Listing, Shape, TableQuestion
+from api.schema.base import Listing, Shape, TableQuestion, example
 from api.schema.parameters import GIVEN, Cursor, Limit, Several, several
 
 Kind = Literal["study", "algorithm", "dataset", "claim", "attribute", "word"]
@@ -15,9 +15,7 @@ Kind = Literal["study", "algorithm", "dataset", "claim", "attribute", "word"]
 class SearchQuery(TableQuestion):
     """What is looked for."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"q": "treshold", "kind": ["algorithm"], "limit": 1}]}
-    )
+    model_config = example(q="treshold", kind=["algorithm"], limit=1)
 
     q: Annotated[str, GIVEN] = Field(
         min_length=1,

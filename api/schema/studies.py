@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from api.schema import words
-from api.schema.base import CitedQuestion, Listing, OfEdition, Shape, SortedQuestion, TableQuestion
+from api.schema.base import (
+    CitedQuestion,
+    Listing,
+    OfEdition,
+    Shape,
+    SortedQuestion,
+    TableQuestion,
+    example,
+)
 from api.schema.parameters import (
     GIVEN,
     WHOLE,
@@ -50,7 +58,7 @@ class StudyFilters(OfEdition, TableQuestion):
 class StudyQuery(CitedQuestion):
     """The query of one study."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
+    model_config = example()
 
 
 class Runs(Shape):
@@ -263,9 +271,7 @@ class Studies(Listing):
 class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
     """Which studies."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"detector": ["CMOS"], "mask": ["Multi-Ap."], "limit": 1}]}
-    )
+    model_config = example(detector=["CMOS"], mask=["Multi-Ap."], limit=1)
 
     key: Several[words.StudyKey] = several("Only studies with one of these keys.")
     year_min: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="First year.")
