@@ -18,9 +18,7 @@ NAMES = ("methods", "constants", "benches", "sources", "poses")
 def findings(
     finding: Annotated[
         str | None,
-        typer.Argument(
-            help=f"Finding whose pairs to print: {', '.join(NAMES)}.", show_default=False
-        ),
+        typer.Argument(help=f"Finding whose pairs to print: {', '.join(NAMES)}."),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:

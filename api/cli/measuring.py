@@ -52,7 +52,6 @@ StoreOption = Annotated[
             "Local store for new results; by default $SUNATLAS_STORE or the user's cache directory."
         ),
         file_okay=False,
-        show_default=False,
     ),
 ]
 SchedulerOption = Annotated[
@@ -61,7 +60,6 @@ SchedulerOption = Annotated[
         help=(
             "Address of a Dask scheduler, such as tcp://127.0.0.1:8786; needs the extra 'cluster'."
         ),
-        show_default=False,
     ),
 ]
 SuiteOption = Annotated[

@@ -9,9 +9,7 @@ import typer
 
 DataOption = Annotated[
     Path | None,
-    typer.Option(
-        help="Directory of the tables; by default those of the Atlas.", show_default=False
-    ),
+    typer.Option(help="Directory of the tables; by default those of the Atlas."),
 ]
 ApplyOption = Annotated[
     bool, typer.Option("--apply", help="Write the changes; otherwise only show them.")

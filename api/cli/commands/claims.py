@@ -32,7 +32,6 @@ def claims(
             autocompletion=complete(words.ClaimId),
             metavar="[ID]",
             help="Claim to show in detail, such as C29.",
-            show_default=False,
         ),
     ] = None,
     *,

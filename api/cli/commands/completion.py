@@ -22,7 +22,7 @@ class Shell(StrEnum):
 
 @app.command()
 def completion(
-    shell: Annotated[Shell, typer.Argument(help="Shell.", show_default=False)],
+    shell: Annotated[Shell, typer.Argument(help="Shell.")],
 ) -> None:
     """Print the shell completion script.
 

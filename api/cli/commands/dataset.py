@@ -51,9 +51,7 @@ BUILT = ("dataset", "rms_deg", "id", "name", "accuracy_rms_deg", "accuracy_ratio
 
 NameArgument = Annotated[
     str,
-    typer.Argument(
-        autocompletion=complete(words.DatasetName), help="Name of the data set.", show_default=False
-    ),
+    typer.Argument(autocompletion=complete(words.DatasetName), help="Name of the data set."),
 ]
 
 
@@ -99,11 +97,11 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
 def export(
     name: NameArgument,
     *,
-    out: Annotated[Path, typer.Option(help="Output directory.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="Output directory.")],
     asked: Asked,
     split: Annotated[
         list[str] | None,
-        typer.Option(help="Only calibration or test; may be repeated.", show_default=False),
+        typer.Option(help="Only calibration or test; may be repeated."),
     ] = None,
     n: Annotated[
         int | None,
@@ -152,7 +150,6 @@ def errors(
             help=(
                 "Output file: CSV, or .parquet for the published file with all pipelines and units."
             ),
-            show_default=False,
         ),
     ] = None,
     form: FormatOption = Format.TABLE,
@@ -185,7 +182,7 @@ def errors(
 
 @app.command()
 def verify(
-    directory: Annotated[Path, typer.Argument(help="Directory of the export.", show_default=False)],
+    directory: Annotated[Path, typer.Argument(help="Directory of the export.")],
     *,
     quick: Annotated[
         bool, typer.Option("--quick", help="Do not generate the export again.")
@@ -252,7 +249,7 @@ def realism(
 def preview(
     name: NameArgument,
     *,
-    out: Annotated[Path, typer.Option(help="PNG file to write.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="PNG file to write.")],
     condition: Annotated[
         str | None,
         typer.Option(
@@ -328,7 +325,6 @@ def pin(
             autocompletion=complete(words.DatasetName),
             metavar="[NAME]...",
             help="Data sets; by default all.",
-            show_default=False,
         ),
     ] = None,
     *,

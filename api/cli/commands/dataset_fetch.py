@@ -18,7 +18,7 @@ def fetch(
     context: typer.Context,
     name: Annotated[
         str | None,
-        typer.Argument(help="Name of the set; without one they are listed.", show_default=False),
+        typer.Argument(help="Name of the set; without one they are listed."),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Output directory; by default the set's name.")

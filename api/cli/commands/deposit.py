@@ -46,7 +46,6 @@ def build(
         typer.Option(
             metavar="FILE",
             help="Source archive of this version, where this is no checkout.",
-            show_default=False,
         ),
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Do not show progress.")] = False,
@@ -76,7 +75,7 @@ def build(
 
 @app.command()
 def verify(
-    directory: Annotated[Path, typer.Argument(help="Directory of the bundle.", show_default=False)],
+    directory: Annotated[Path, typer.Argument(help="Directory of the bundle.")],
     *,
     quick: Annotated[
         bool, typer.Option("--quick", help="Do not generate the samples again.")
@@ -115,7 +114,7 @@ def verify(
 
 @app.command()
 def rescore(
-    directory: Annotated[Path, typer.Argument(help="Directory of the bundle.", show_default=False)],
+    directory: Annotated[Path, typer.Argument(help="Directory of the bundle.")],
     *,
     cells: Annotated[int, typer.Option(help="Number of scores to measure.", min=1)] = 20,
     seed: Annotated[int, typer.Option(help="Draws them.")] = 1,
@@ -211,9 +210,7 @@ def upload(
 
 @app.command()
 def publish(
-    record_id: Annotated[
-        str, typer.Argument(help="Identifier of the draft, printed by upload.", show_default=False)
-    ],
+    record_id: Annotated[str, typer.Argument(help="Identifier of the draft, printed by upload.")],
     *,
     bundle: BuiltBundle = _BUILT,
     production: ProductionOption = False,

@@ -26,9 +26,7 @@ _ACCEPT = {Format.TABLE: b"text/csv", Format.CSV: b"text/csv", Format.JSON: b"ap
 def get(
     address: Annotated[
         str,
-        typer.Argument(
-            help="Address, such as '/v1/flows/error?task=Accuracy'.", show_default=False
-        ),
+        typer.Argument(help="Address, such as '/v1/flows/error?task=Accuracy'."),
     ],
     form: FormatOption = Format.TABLE,
 ) -> None:

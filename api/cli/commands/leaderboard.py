@@ -74,7 +74,6 @@ def leaderboard(
         typer.Option(
             autocompletion=complete(words.DatasetName),
             help="Show all pipelines of this data set; may be repeated.",
-            show_default=False,
         ),
     ] = None,
     condition: Annotated[
@@ -82,7 +81,6 @@ def leaderboard(
         typer.Option(
             autocompletion=complete(words.Condition),
             help="Only this condition; may be repeated.",
-            show_default=False,
         ),
     ] = None,
     field: Annotated[
@@ -90,7 +88,6 @@ def leaderboard(
         typer.Option(
             help="Rank by the error within this angle of the boresight, degrees: one of "
             f"{', '.join(map(str, EDGES_DEG[1:]))}.",
-            show_default=False,
         ),
     ] = None,
     max_error: Annotated[
@@ -98,7 +95,6 @@ def leaderboard(
         typer.Option(
             min=0.0,
             help="Rank by the field of view within which the error is at most this, degrees.",
-            show_default=False,
         ),
     ] = None,
     check: Annotated[

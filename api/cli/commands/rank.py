@@ -37,15 +37,12 @@ def rank(
         typer.Argument(
             autocompletion=complete(words.ExtractorName),
             help="Name, such as tm, or file of the algorithm.",
-            show_default=False,
         ),
     ],
     *,
     dataset: Annotated[
         str,
-        typer.Option(
-            autocompletion=complete(words.DatasetName), help="Data set.", show_default=False
-        ),
+        typer.Option(autocompletion=complete(words.DatasetName), help="Data set."),
     ],
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     store: StoreOption = None,

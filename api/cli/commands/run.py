@@ -52,7 +52,6 @@ def run(
         typer.Argument(
             autocompletion=complete(words.StudyKey),
             help="Key of the study, such as Chang2008.",
-            show_default=False,
         ),
     ] = None,
     *,

@@ -34,7 +34,7 @@ def add(
     context: typer.Context,
     file: Annotated[
         Path | None,
-        typer.Argument(help="TOML template of the study.", show_default=False),
+        typer.Argument(help="TOML template of the study."),
     ] = None,
     *,
     init: Annotated[
@@ -43,7 +43,6 @@ def add(
             "--init",
             metavar="KEY",
             help="Write an empty template for this key to FILE, or print it.",
-            show_default=False,
         ),
     ] = None,
     apply: ApplyOption = False,

@@ -25,7 +25,6 @@ def import_(
         Path,
         typer.Argument(
             help="CSV or XLSX table of studies, or the survey's bibliography (.bib, .ris).",
-            show_default=False,
         ),
     ],
     *,

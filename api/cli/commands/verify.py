@@ -32,15 +32,11 @@ def verify(
     *,
     sample: Annotated[
         int | None,
-        typer.Option(
-            min=1,
-            help="Number of cells; by default 10, or all cells of --suite.",
-            show_default=False,
-        ),
+        typer.Option(min=1, help="Number of cells; by default 10, or all cells of --suite."),
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(help="Seed of the random sample; by default a new one.", show_default=False),
+        typer.Option(help="Seed of the random sample; by default a new one."),
     ] = None,
     suite: SuiteOption = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
