@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from benchmark.leaderboard import summaries
-from survey_data.reported import UNSPECIFIED, reported_accuracies, statistics
+from survey_data.reported import UNSPECIFIED, statistics
 
 NOTHING = "–"
 
@@ -90,26 +90,8 @@ def kind_said(kind: str) -> str:
     return "of which kind is not said" if kind == UNSPECIFIED else statistics()[kind].name
 
 
-def reported_rms(value: float | None, kind: str) -> float | None:
-    """Return a published accuracy as RMS, by the rule of its kind."""
-    return None if value is None else reported_accuracies("accuracy", value, kind).rms_deg
-
-
 GIVEN = (
-    *(
-        number,
-        degrees,
-        own_error,
-        wide,
-        times,
-        percent,
-        count_text,
-        studies_text,
-        sentence,
-        upfirst,
-        unit_name,
-    ),
-    kind_said,
-    reported_rms,
+    *(number, degrees, own_error, wide, times, percent, count_text, studies_text),
+    *(sentence, upfirst, unit_name, kind_said),
 )
 """What templates are given as filters."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Annotated, Any
 
 from fastapi import Path, Query, Request
@@ -20,6 +19,7 @@ from api.service.knowledge import Knowledge
 from api.web.dependencies import Known
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import Study
+from survey_data.products import built_sensors
 
 router = PageRouter()
 
@@ -101,20 +101,13 @@ def _one(
         }
         for pair in document["architectures"]
     ]
-    hardware = [h for h in _hardware().values() if getattr(h, attribute) == value]
+    hardware = [one for one in built_sensors().values() if getattr(one, attribute) == value]
     return View(
         "value.html",
         Document(document, ARCHITECTURE_COLUMNS, lambda: rows),
         hardware=hardware,
         editions=shown,
     )
-
-
-@cache
-def _hardware() -> Mapping[str, Any]:
-    from survey_data.hardware import hardware  # noqa: PLC0415 - read when it is first shown
-
-    return hardware()
 
 
 Edition = Annotated[OfEdition, Query()]
