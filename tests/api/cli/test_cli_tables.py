@@ -31,6 +31,14 @@ TABLES = (
         "scores",
     ),
 )
+#: What says of one thing, or in sentences: no words of rows are looked for.
+OTHERS = (
+    *(("studies", "Chang2008"), ("claims", "C04"), ("dataset", "describe", "pd-slit")),
+    ("dataset", "realism", "--dataset", "pd-slit"),
+    *(("assess", "--method", "BCM"), ("run", "Chang2008", "--condition", "nominal")),
+    *(("survey", "check"), ("recommend", "--detector", "Event", "--mask", "Lens")),
+    ("get", "/v1/taxonomy"),
+)
 
 
 def shown(*arguments, width=80):
@@ -60,20 +68,7 @@ def test_every_row_keeps_its_words_at_every_width(arguments, names, listed, widt
 
 
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("studies", "Chang2008"),
-        ("claims", "C04"),
-        ("dataset", "describe", "pd-slit"),
-        ("dataset", "realism", "--dataset", "pd-slit"),
-        ("assess", "--method", "BCM"),
-        ("run", "Chang2008", "--condition", "nominal"),
-        ("survey", "check"),
-        ("recommend", "--detector", "Event", "--mask", "Lens"),
-        ("get", "/v1/taxonomy"),
-    ],
-)
+@pytest.mark.parametrize("arguments", OTHERS)
 def test_no_line_is_wider_than_the_terminal(arguments, width):
     assert max(map(len, shown(*arguments, width=width).splitlines())) <= width
 
