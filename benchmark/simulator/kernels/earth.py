@@ -17,6 +17,10 @@ from algorithms.contract import Floats
 
 #: Three numbers instead of an array: nothing to allocate in the innermost loops.
 Vector = tuple[float, float, float]
+#: Cosines of so many angles, a power of two, around the circle, and the angle between them.
+_STEPS = 4096
+_STEP, _PER_RADIAN = 2.0 * math.pi / _STEPS, _STEPS / (2.0 * math.pi)
+_COSINES = np.array([math.cos(n * _STEP) for n in range(_STEPS)])
 
 
 @compiled
@@ -26,6 +30,34 @@ def _field(x: float, y: float, z: float, waves: Floats) -> float:
     for m in range(waves.shape[0]):
         field += math.cos(waves[m, 0] * x + waves[m, 1] * y + waves[m, 2] * z + waves[m, 3])
     return field * math.sqrt(2.0 / waves.shape[0])
+
+
+@compiled
+def _cover(x: float, y: float, z: float, earth: Floats, waves: Floats) -> float:
+    """Share of clouds over a point of the ground, a unit vector from Earth's centre.
+
+    Most ground is clear or clouded altogether, which a table of cosines is exact enough to tell.
+    """
+    count, rough = waves.shape[0], 0.0
+    for m in range(count):
+        phase = waves[m, 0] * x + waves[m, 1] * y + waves[m, 2] * z + waves[m, 3]
+        rough += _COSINES[math.floor(phase * _PER_RADIAN) & (_STEPS - 1)]
+    scale = math.sqrt(2.0 / count) / earth[4]
+    cover = rough * scale - earth[3] / earth[4] + 0.5
+    # a cosine changes by no more than its angle; a thousandth for rounding
+    error = 1.001 * count * _STEP * scale
+    if cover < -error:
+        return 0.0
+    if cover > 1.0 + error:
+        return 1.0
+    return float(min(max((_field(x, y, z, waves) - earth[3]) / earth[4] + 0.5, 0.0), 1.0))
+
+
+@compiled
+def cover_of(out: Floats, ground: Floats, earth: Floats, waves: Floats) -> None:
+    """Write the share of clouds (P,) over ground (P, 3)."""
+    for p in range(out.shape[0]):
+        out[p] = _cover(ground[p, 0], ground[p, 1], ground[p, 2], earth, waves)
 
 
 @compiled
@@ -51,8 +83,7 @@ def _radiance(sight: Vector, nadir: Vector, sun: Vector, earth: Floats, waves: F
         return 0.0
     reflectance = earth[1]
     if waves.shape[0] > 0:
-        cover = (_field(x, y, z, waves) - earth[3]) / earth[4] + 0.5
-        reflectance += (earth[2] - earth[1]) * min(max(cover, 0.0), 1.0)
+        reflectance += (earth[2] - earth[1]) * _cover(x, y, z, earth, waves)
     return float(reflectance * lit / math.pi)
 
 

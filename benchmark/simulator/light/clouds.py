@@ -72,19 +72,12 @@ class Clouds:
 
     def over(self, ground: Floats, radius_km: float) -> Floats:
         """(P,) share of clouds over ground (P, 3), unit vectors from Earth's centre."""
-        return self.share(self.field(ground, radius_km), self.threshold(radius_km))
-
-    def field(self, ground: Floats, radius_km: float) -> Floats:
-        """(P,) the sum of waves, of mean square 1, over ground (P, 3)."""
-        from benchmark.simulator.kernels.earth import field_of  # noqa: PLC0415 - Numba on demand
+        from benchmark.simulator.kernels.earth import cover_of  # noqa: PLC0415 - Numba on demand
 
         out = np.empty(len(ground))
-        field_of(out, np.ascontiguousarray(ground), self.table(radius_km))
+        numbers = np.array([1.0, 0.0, 0.0, self.threshold(radius_km), self.softness])
+        cover_of(out, np.ascontiguousarray(ground), numbers, self.table(radius_km))
         return out
-
-    def share(self, field: Floats, threshold: float) -> Floats:
-        """(P,) share of clouds where the field is (P,), cut off at a threshold."""
-        return np.clip((field - threshold) / self.softness + 0.5, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -134,6 +127,8 @@ def _table(clouds: Clouds, radius_km: float) -> Floats:
 
 @lru_cache(maxsize=8)
 def _threshold(clouds: Clouds, radius_km: float) -> float:
+    from benchmark.simulator.kernels.earth import field_of  # noqa: PLC0415 - Numba on demand
+
     z = [1.0 - 2.0 * (n + 0.5) / _POINTS for n in range(_POINTS)]
     ground = np.array(
         [
@@ -145,10 +140,12 @@ def _threshold(clouds: Clouds, radius_km: float) -> float:
             for n, h in enumerate(z)
         ]
     )
-    low, high, field = -5.0, 5.0, clouds.field(ground, radius_km)
+    low, high, field = -5.0, 5.0, np.empty(_POINTS)
+    field_of(field, ground, clouds.table(radius_km))
     for _ in range(40):
         middle = (low + high) / 2.0
-        mean = math.fsum(clouds.share(field, middle).tolist()) / _POINTS
+        cover = np.clip((field - middle) / clouds.softness + 0.5, 0.0, 1.0)
+        mean = math.fsum(cover.tolist()) / _POINTS
         if mean > clouds.cover:
             low = middle
         else:

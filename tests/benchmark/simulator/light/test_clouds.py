@@ -39,6 +39,17 @@ def test_clouds_cover_what_they_are_said_to() -> None:
     assert np.mean(earth.sent_back(sphere())) == pytest.approx(0.3, abs=0.001)
 
 
+@pytest.mark.parametrize("clouds", [Clouds(), Clouds(softness=0.02, waves=7), Clouds(softness=4)])
+def test_cover_is_the_sum_of_waves_cut_off_softly(clouds: Clouds) -> None:
+    """Where the kernel's table of cosines tells that ground is clear or clouded, too."""
+    ground, radius_km = sphere(), CloudyEarth().radius_km
+    waves = clouds.table(radius_km)
+    field = np.cos(ground @ waves[:, :3].T + waves[:, 3]).sum(axis=1) * math.sqrt(2 / len(waves))
+    soft = (field - clouds.threshold(radius_km)) / clouds.softness + 0.5
+    cover = clouds.over(ground, radius_km)
+    np.testing.assert_allclose(cover, np.clip(soft, 0.0, 1.0), atol=1e-10)
+
+
 def test_clouds_are_as_bright_as_the_mean_asks() -> None:
     earth = CloudyEarth(reflectance=0.3, clouds=Clouds(cover=0.5, clear=0.1))
     assert earth.cloudy == pytest.approx(0.5)
