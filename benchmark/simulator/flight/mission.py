@@ -366,7 +366,10 @@ class Lifetime:
             read = np.clip(np.rint(known + bent(known)), 0, most)
             # a full pixel stays full, an empty one empty
             read = np.where((known == 0) | (known >= most), known, read)
-            return np.take(read.astype(observations.dtype), observations)
+            table, found = read.astype(observations.dtype), np.empty_like(observations)
+            for one, reading in zip(found, observations, strict=True):
+                np.take(table, reading, out=one, mode="clip")  # "raise" copies both
+            return found
         return np.asarray(observations + step * np.rint(bent(observations)))
 
 
