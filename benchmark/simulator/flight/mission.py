@@ -367,8 +367,9 @@ class Lifetime:
             # a full pixel stays full, an empty one empty
             read = np.where((known == 0) | (known >= most), known, read)
             table, found = read.astype(observations.dtype), np.empty_like(observations)
-            for one, reading in zip(found, observations, strict=True):
-                np.take(table, reading, out=one, mode="clip")  # "raise" copies both
+            for n in range(len(found)):
+                one = slice(n, n + 1)
+                np.take(table, observations[one], out=found[one], mode="clip")  # "raise" copies
             return found
         return np.asarray(observations + step * np.rint(bent(observations)))
 
