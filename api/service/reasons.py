@@ -75,17 +75,19 @@ def _measured_words(answer: Answer, best: Calibration, *, meets: bool) -> str:
 
 
 def _finer_at_times(one: RankedArchitecture) -> list[str]:
-    """Return what errs far less than the best measured, but answers too seldom to be it."""
+    """Return what errs far less on the same data than the best, but answers too seldom."""
     question = one.question
-    if one.best is None or one.best.judged is None:
+    if one.best is None or one.best.judged is None or one.best.pipeline is None:
         return []
-    half = question.requirements.half_field_deg or 0.0
+    half, data = question.requirements.half_field_deg or 0.0, one.best.pipeline.dataset
     of_place = question.candidates & (question.table.row_place == one.number)
     rows = [question.table.rows[at] for at in np.flatnonzero(of_place)]
     partly = [
         PartialAnswer(row.nominal.rms_deg or math.inf, row.nominal.availability or 0.0, row)
         for row in rows
-        if not row.nominal.is_available and (row.half_fov_deg or 0.0) >= half
+        if row.dataset == data
+        and not row.nominal.is_available
+        and (row.half_fov_deg or 0.0) >= half
     ]
     finer = better_partial_answer(one.best.judged.error_deg, partly)
     if finer is None:
