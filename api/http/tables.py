@@ -135,6 +135,9 @@ TABLES = (
     Table(
         "/realism", datasets.realism, of_datasets.Realism, "Data sets compared with built sensors"
     ),
+    Table(
+        "/realism/sold", datasets.as_sold, of_datasets.SoldSensors, "Built sensors as they are sold"
+    ),
     Table("/results", scores.results, of_scores.Scores | Selected, "Scores"),
     Table("/leaderboard", leaderboard.leaderboard, of_scores.Leaderboard, "Leaderboard"),
     Table(

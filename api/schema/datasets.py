@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -160,3 +160,56 @@ class DatasetsQuery(SortedQuestion, rows=Dataset):
     """Which page of the data sets."""
 
     model_config = example(limit=1)
+
+
+class SoldSensor(Shape):
+    """A built sensor simulated as it is sold: a row of the table."""
+
+    hardware: str = Field(description="Id in the table of built sensors.")
+    name: str
+    detector: str
+    mask: str
+    depth: Literal["uncalibrated", "constants", "table"] = Field(
+        description="Depth of calibration."
+    )
+    depth_basis: Literal["stated", "family", "assumed"] = Field(
+        description="Who says so: its row, another row of its family, or nobody."
+    )
+    bench: Literal["standard", "fine"] | None = Field(
+        description="Calibration bench of 0.016 or 0.001 deg; null if uncalibrated."
+    )
+    level: Literal["ground", "flight"] = Field(description="Where it is tested.")
+    statistic: str = Field(description="Statistic of all errors in the row.")
+    stated_deg: float = Field(description="Published accuracy.")
+    simulated_deg: float | None = Field(description="The same statistic, simulated.")
+    ratio: float | None = Field(description="Simulated over published.")
+    agrees: bool | None = Field(description="Whether the ratio is within a factor of 2.")
+    reason: str = Field(description="Which other runs agree, if it does not.")
+    dataset: str
+    half_fov_deg: float | None
+    constants: str = Field(description="Pipeline with constants of a physical model.")
+    table: str = Field(description="Most accurate pipeline of any kind.")
+    uncalibrated_deg: float | None = Field(description="Error with the constants of the design.")
+    constants_standard_deg: float | None = Field(description="With constants, standard bench.")
+    constants_fine_deg: float | None = Field(description="With constants, fine bench.")
+    constants_true_deg: float | None = Field(description="With constants, true directions.")
+    table_standard_deg: float | None = Field(description="With a table, standard bench.")
+    table_fine_deg: float | None = Field(description="With a table, fine bench.")
+    table_true_deg: float | None = Field(description="With a table, true directions.")
+    other_level_deg: float | None = Field(description="In flight, or on the ground if flown.")
+    without_earth_deg: float | None = Field(description="In flight, without light of the Earth.")
+
+
+class LeftOutSensor(Shape):
+    """A built sensor that is not simulated."""
+
+    hardware: str = Field(description="Id in the table of built sensors.")
+    reason: str = Field(description="Why it is not simulated.")
+
+
+class SoldSensors(Shape):
+    """Built sensors simulated as they are sold, beside their published accuracy."""
+
+    words: str = Field(description="How many agree.")
+    items: list[SoldSensor]
+    left_out: list[LeftOutSensor] = Field(description="Built sensors that are not simulated.")

@@ -14,6 +14,7 @@ from api.schema.datasets import (
     Dataset,
     DatasetsQuery,
     RealismQuery,
+    SoldSensor,
 )
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.table import columns_of
@@ -94,6 +95,22 @@ def realism(known: Knowledge, query: RealismQuery) -> Document:
         if not query.dataset or row["dataset"] in query.dataset
     ]
     return Document({"datasets": chosen}, columns_of(BuiltSensorRow), lambda: _built(chosen))
+
+
+def as_sold(known: Knowledge) -> Document:
+    """Simulate built sensors as they are sold, beside their published accuracy.
+
+    Depth of calibration and bench are those that a sensor states, or assumed by its class; the
+    error is of the statistic and the field that it states. Each row has the errors at all depths
+    and on both benches.
+    """
+    from benchmark.as_sold.mapping import left_out  # noqa: PLC0415 - loads the simulator
+    from benchmark.as_sold.record import beside_stated, tally  # noqa: PLC0415 - likewise
+
+    items = beside_stated(known.measurements.directory)
+    without = [{"hardware": name, "reason": why} for name, why in left_out().items()]
+    document = {"words": tally(items), "items": items, "left_out": without}
+    return Document(document, columns_of(SoldSensor), lambda: items)
 
 
 def _built(chosen: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

@@ -6,10 +6,11 @@
   it, then the nearest field, then the first by name. A stated field that is narrower narrows it.
   Heights and pixels are the data set's: the one height that is stated and measured is its own.
 - **Depth** of calibration: what its row says (``readings.csv``), or that of its family. Assumed
-  where nothing is said: none for cells without a mask that are sold, which go by the cosine law;
-  constants of a physical model for other sensors that are sold; a table for papers and prototypes,
-  which publish their best. Constants are those of the most accurate physical model on the standard
-  unit; a table is the most accurate calibration of any kind, tables and networks among them.
+  where nothing is said: uncalibrated for cells without a mask that are sold, which go by the
+  cosine law; constants of a physical model for other sensors that are sold; a table for papers and
+  prototypes, which publish their best. Constants are those of the most accurate physical model on
+  the standard unit; a table is the most accurate calibration of any kind, tables and networks among
+  them.
 - **Bench**: the standard one, 0.016 deg; one of 0.001 deg where the stated accuracy is below what
   the standard one can show.
 - **Statistic**: as stated; where nothing is said, the root mean square.
@@ -34,11 +35,10 @@ from survey_data.products import BuiltSensor, built_sensors
 from survey_data.reported import UNSPECIFIED, reported_accuracies
 from survey_data.table_records import read_records
 
-Depth = Literal["none", "constants", "table"]
+Depth = Literal["uncalibrated", "constants", "table"]
 Bench = Literal["standard", "fine"]
 Level = Literal["ground", "flight"]
 DEPTHS: tuple[Depth, ...] = get_args(Depth)
-BENCHES: tuple[Bench, ...] = get_args(Bench)
 
 FILE = Path(__file__).parent / "readings.csv"
 COLUMNS = ("hardware", "depth", "statistic", "level", "not_measured", "because")
@@ -76,6 +76,11 @@ class AsSold:
     bench: Bench
     statistic: str
     level: Level
+
+    @property
+    def cell(self) -> str:
+        """Depth and bench in one word, as the record names its columns."""
+        return self.depth if self.depth == "uncalibrated" else f"{self.depth}_{self.bench}"
 
 
 @cache
@@ -186,4 +191,4 @@ def _depth(one: BuiltSensor) -> tuple[Depth, str]:
         return cast("Depth", family[0]), "family"
     if one.group == "paper":
         return "table", "assumed"
-    return ("none" if one.mask == "Maskless" else "constants"), "assumed"
+    return ("uncalibrated" if one.mask == "Maskless" else "constants"), "assumed"

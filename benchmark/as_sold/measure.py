@@ -15,8 +15,8 @@ from algorithms.contract import Extractor, Floats, UnsuitableDesignError, Unusab
 from algorithms.pipeline import Pipeline
 from algorithms.references import ReferenceCorrection
 from algorithms.threads import one_thread
-from benchmark.as_sold.mapping import BENCHES, AsSold
-from benchmark.as_sold.record import CELLS
+from benchmark.as_sold.cells import CELLS
+from benchmark.as_sold.mapping import AsSold
 from benchmark.datasets.calibration import STANDARD_BENCH
 from benchmark.datasets.calibration import Bench as Turntable
 from benchmark.datasets.corrected import corrections
@@ -30,11 +30,16 @@ from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import Camera
 
+#: The level of a flight on which no light of the Earth is seen, as data sheets have it.
+WITHOUT_EARTH = "flight-without-earth"
+_SPLITS = ("calibration", "test")
+_Pipeline = tuple[type[Extractor], Scored]
+_Corrections = Mapping[str, ReferenceCorrection | None]
 #: Units that errors are pooled over; the standard one chose the pipelines.
 UNITS = 5
 #: The standard bench's directions are off by 0.016 deg, the fine one's by a sixteenth.
 _FINE = 1.0 / 16.0
-_TURNTABLES: Mapping[str, Turntable] = MappingProxyType(
+_TURNTABLES: Mapping[str, Turntable | None] = MappingProxyType(
     {
         "standard": STANDARD_BENCH,
         "fine": dataclasses.replace(
@@ -44,6 +49,7 @@ _TURNTABLES: Mapping[str, Turntable] = MappingProxyType(
             squareness_deg=_FINE * STANDARD_BENCH.squareness_deg,
             eccentricity_deg=_FINE * STANDARD_BENCH.eccentricity_deg,
         ),
+        "true": None,
     }
 )
 #: Where models with constants of a physical design are; all others are tables of some kind.
@@ -67,23 +73,23 @@ STATISTICS: Mapping[str, Callable[[Floats], float]] = MappingProxyType(
         "max": lambda error: float(np.max(error)),
     }
 )
-_SPLITS = ("calibration", "test")
-_Pipeline = tuple[type[Extractor], Scored]
-_Corrections = Mapping[str, ReferenceCorrection | None]
 
 
 @dataclass(frozen=True)
 class AsSoldTask:
-    """A data set over a field and at a level, its pipelines, and the sensors that it simulates.
+    """A data set over a field, its pipelines, and the sensors that it simulates.
 
-    `constants` and `table` are None where no model of the kind is scored on such a sensor.
+    `conditions` are those on the ground, in flight and there without the Earth, `all_observable`
+    says whether a direction can be determined from every test sample. `constants` and `table` are
+    None where no pipeline of the kind is scored on such a sensor.
     """
 
     preset: Preset
-    condition: str
+    conditions: Mapping[str, str]
     sensors: tuple[AsSold, ...]
     constants: _Pipeline | None
     table: _Pipeline | None
+    all_observable: bool
 
 
 def has_constants(model: Scored) -> bool:
@@ -137,35 +143,47 @@ def as_drawn(preset: Preset, condition: str) -> Preset:
 
 
 def measure(task: AsSoldTask) -> list[tuple[str, dict[str, Any]]]:
-    """Return the errors of every sensor of a task, in its own statistic, by depth and bench."""
+    """Return the errors of every sensor of a task, in its own statistic, by depth and bench.
+
+    Over observable samples with an answer, pooled over units.
+    """
     with one_thread():
-        errors: dict[str, list[Floats]] = {cell: [] for cell in CELLS}
-        for cell, of_unit in _errors(task):
-            errors[cell].append(of_unit)
-    answered = {
-        cell: found[np.isfinite(found)]
-        for cell, parts in errors.items()
-        for found in (np.concatenate(parts) if parts else np.empty(0),)
+        found = {level: _pooled(task, condition) for level, condition in task.conditions.items()}
+    return [(one.sensor.id, _row(task, one, found)) for one in task.sensors]
+
+
+def _row(
+    task: AsSoldTask, one: AsSold, found: Mapping[str, Mapping[str, Floats]]
+) -> dict[str, Any]:
+    def stated(errors: Floats) -> float | None:
+        return store(STATISTICS[one.statistic](errors)) if len(errors) else None
+
+    other = "ground" if one.level == "flight" else "flight"
+    return {
+        "hardware": one.sensor.id,
+        "dataset": task.preset.name,
+        "half_fov_deg": task.preset.geometry.half_fov_deg,
+        "level": one.level,
+        "statistic": one.statistic,
+        "constants": _name(task.constants),
+        "table": _name(task.table),
+        **{f"{cell}_deg": stated(found[one.level][cell]) for cell in CELLS},
+        "other_level_deg": stated(found[other][one.cell]),
+        "without_earth_deg": stated(found[WITHOUT_EARTH][one.cell]),
     }
-    return [
-        (
-            one.sensor.id,
-            {
-                "hardware": one.sensor.id,
-                "dataset": task.preset.name,
-                "half_fov_deg": task.preset.geometry.half_fov_deg,
-                "level": one.level,
-                "statistic": one.statistic,
-                "constants": _name(task.constants),
-                "table": _name(task.table),
-                **{
-                    f"{cell}_deg": store(STATISTICS[one.statistic](found)) if len(found) else None
-                    for cell, found in answered.items()
-                },
-            },
-        )
-        for one in task.sensors
-    ]
+
+
+def _pooled(task: AsSoldTask, condition: str) -> dict[str, Floats]:
+    """Return the errors of all units by cell; none of a cell without a pipeline."""
+    seen: Any = slice(None)
+    if not task.all_observable:
+        memory.cache_for((task.preset.name, 0), task.preset.name)
+        seen = np.asarray(task.preset.bound(condition, "test").observable)
+    errors: dict[str, list[Floats]] = {cell: [np.empty(0)] for cell in CELLS}
+    for cell, of_unit in _errors(task, condition):
+        errors[cell].append(of_unit[seen])
+    whole = {cell: np.concatenate(parts) for cell, parts in errors.items()}
+    return {cell: found[np.isfinite(found)] for cell, found in whole.items()}
 
 
 class _Unit:
@@ -207,19 +225,19 @@ class _Unit:
         return separation_deg(made.predict_features(asked, test.context), test.sun)
 
 
-def _errors(task: AsSoldTask) -> Iterator[tuple[str, Floats]]:
+def _errors(task: AsSoldTask, condition: str) -> Iterator[tuple[str, Floats]]:
     """Yield the errors (N,) of each unit by cell; none of a cell that has no model."""
     design = drawn = None
     if task.constants is not None:
-        drawn = _Unit(as_drawn(task.preset, task.condition), task.condition)
+        drawn = _Unit(as_drawn(task.preset, condition), condition)
         design = drawn.fitted(task.constants, None)
     for number in range(1, UNITS + 1):
-        unit = _Unit(task.preset.for_unit(number), task.condition)
+        unit = _Unit(task.preset.for_unit(number), condition)
         if drawn is not None and design is not None:
-            yield "none", unit.errors(design, drawn.by)
+            yield "uncalibrated", unit.errors(design, drawn.by)
         for depth, pipeline in (("constants", task.constants), ("table", task.table)):
-            for bench in BENCHES:
-                made = pipeline and unit.fitted(pipeline, _TURNTABLES[bench], number)
+            for bench, turntable in _TURNTABLES.items():
+                made = pipeline and unit.fitted(pipeline, turntable, number)
                 if made is not None:
                     yield f"{depth}_{bench}", unit.errors(made)
 

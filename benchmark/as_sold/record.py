@@ -8,21 +8,19 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from benchmark.as_sold.cells import CELLS
 from benchmark.results.csv_tables import Reader, above_zero, word
 from benchmark.results.row_file import Row, TableFile
 from benchmark.results.store import PUBLISHED
 
 #: Within this factor of the stated figure a simulation agrees.
 FACTOR = 2.0
-#: Depth and bench of the errors of a row; without a calibration there is no bench.
-CELLS = ("none", "constants_standard", "constants_fine", "table_standard", "table_fine")
 _WORDS = {
-    "none": "uncalibrated",
-    "constants_standard": "with constants of the unit",
-    "constants_fine": "with constants of the unit from the fine bench",
-    "table_standard": "with a table of the unit",
-    "table_fine": "with a table of the unit from the fine bench",
+    "uncalibrated": "no calibration",
+    "constants": "constants of the unit",
+    "table": "a table",
 }
+_BENCHES = {"standard": "standard bench", "fine": "fine bench", "true": "true directions"}
 
 COLUMNS: Mapping[str, Reader] = {
     "hardware": word,
@@ -33,6 +31,8 @@ COLUMNS: Mapping[str, Reader] = {
     "constants": str,
     "table": str,
     **{f"{cell}_deg": above_zero for cell in CELLS},
+    "other_level_deg": above_zero,
+    "without_earth_deg": above_zero,
 }
 
 
@@ -53,7 +53,7 @@ def beside_stated(directory: Path | str = PUBLISHED) -> list[dict[str, Any]]:
     """Return each simulated sensor beside its stated figure, by id.
 
     ``simulated_deg`` is that at the depth and on the bench of `mapping.as_sold`, ``ratio`` over the
-    stated one; ``reason`` says of a ratio beyond `FACTOR` which other cells of the row are within.
+    stated one; ``reason`` says of a ratio beyond `FACTOR` which other runs of the row are within.
     """
     from benchmark.as_sold.mapping import as_sold  # noqa: PLC0415 - loads the simulator
 
@@ -62,8 +62,7 @@ def beside_stated(directory: Path | str = PUBLISHED) -> list[dict[str, Any]]:
         one = as_sold().get(row["hardware"])
         if one is None:
             continue
-        cell = "none" if one.depth == "none" else f"{one.depth}_{one.bench}"
-        simulated, stated = row[f"{cell}_deg"], one.sensor.accuracy_deg
+        simulated, stated = row[f"{one.cell}_deg"], one.sensor.accuracy_deg
         ratio = None if simulated is None or not stated else simulated / stated
         found.append(
             {
@@ -73,12 +72,12 @@ def beside_stated(directory: Path | str = PUBLISHED) -> list[dict[str, Any]]:
                 "mask": one.sensor.mask,
                 "depth": one.depth,
                 "depth_basis": one.depth_basis,
-                "bench": None if one.depth == "none" else one.bench,
+                "bench": None if one.depth == "uncalibrated" else one.bench,
                 "stated_deg": stated,
                 "simulated_deg": simulated,
                 "ratio": ratio,
                 "agrees": None if ratio is None else 1.0 / FACTOR <= ratio <= FACTOR,
-                "reason": _reason(row, cell, stated, ratio),
+                "reason": _reason(row, one.cell, stated, ratio),
                 **{name: row[name] for name in COLUMNS if name != "hardware"},
             }
         )
@@ -91,22 +90,26 @@ def _reason(row: Row, cell: str, stated: float | None, ratio: float | None) -> s
         return "no pipeline of this kind answers"
     if 1.0 / FACTOR <= ratio <= FACTOR:
         return ""
+    others = {_named(name): row[f"{name}_deg"] for name in CELLS if name != cell}
+    others["on the ground" if row["level"] == "flight" else "in flight"] = row["other_level_deg"]
+    others["in flight without light from the Earth"] = row["without_earth_deg"]
     within = [
-        f"{_WORDS[other]} {row[f'{other}_deg']:.2g} deg"
-        for other in CELLS
-        if other != cell and _agrees(row[f"{other}_deg"], stated)
+        f"{words} {error:.2g} deg"
+        for words, error in others.items()
+        if error is not None and 1.0 / FACTOR <= error / stated <= FACTOR
     ]
     if within:
         return f"within a factor of {FACTOR:g}: {'; '.join(within)}"
-    known = [row[f"{other}_deg"] for other in CELLS if row[f"{other}_deg"] is not None]
+    known = [error for error in (row[f"{cell}_deg"], *others.values()) if error is not None]
     return (
-        f"neither depth nor bench explains it: {min(known):.2g} to {max(known):.2g} deg over all "
-        "of them"
+        f"neither depth, bench nor level explains it: {min(known):.2g} to {max(known):.2g} deg in "
+        "all runs"
     )
 
 
-def _agrees(simulated: float | None, stated: float) -> bool:
-    return simulated is not None and 1.0 / FACTOR <= simulated / stated <= FACTOR
+def _named(cell: str) -> str:
+    depth, _, bench = cell.partition("_")
+    return f"{_WORDS[depth]}, {_BENCHES[bench]}" if bench else _WORDS[depth]
 
 
 def tally(rows: list[dict[str, Any]]) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 import typer
 
@@ -24,10 +25,7 @@ _SHOWN = (
     *("detector", "mask", "dataset", "extractor", "model", "own_error_deg", "height_mm"),
     *("own_at_1_mm_deg", "bound_deg", "half_fov_deg"),
 )
-_EQUAL = (
-    *("design", "extractor", "model", "flight_error_deg", "flight_low_deg", "flight_high_deg"),
-    *("own_error_deg", "bound_deg", "reason"),
-)
+_EQUAL = ("design", "pipeline", "flight", "low", "high", "own", "bound")
 
 
 @app.command()
@@ -63,22 +61,46 @@ def compare(
         if changed:
             raise WrongCallError("--height, --field and --units need --equal")
         answer = ask(compared, asked)
-        emit(answer.rows(), _columns(form, _SHOWN, ComparedRow), form, document=answer.document)
+        shown = _SHOWN if form is Format.TABLE else columns_of(ComparedRow)
+        emit(answer.rows(), shown, form, document=answer.document)
         return
     if asked:
         raise WrongCallError("--equal takes no architectures, data set or pipelines")
     answer = _measured(height, field, units, workers) if changed else ask(equal_heights)
-    emit(answer.rows(), _columns(form, _EQUAL, MaskAtEqualHeight), form, document=answer.document)
-    if form is Format.TABLE and (rows := answer.rows()):
-        first = rows[0]
+    if form is Format.TABLE:
+        _show(answer)
+    else:
+        emit(answer.rows(), columns_of(MaskAtEqualHeight), form, document=answer.document)
+
+
+def _show(answer: Document) -> None:
+    """Print the masks that have an error as a table in degrees, then why others have none."""
+    rows = answer.rows()
+    measured = [row for row in rows if row["flight_error_deg"] is not None]
+    emit([_cells(row) for row in measured], _EQUAL, Format.TABLE)
+    for row in rows:
+        if row["flight_error_deg"] is None:
+            say(f"{row['design']}: {row['reason'] or 'below 95 % availability in flight'}")
+    for row in rows[:1]:
         say(
-            f"{answer.document['detector']}; height {first['height_mm']:g} mm, field "
-            f"{2 * first['half_fov_deg']:g} deg, {first['units']} units."
+            f"Errors in deg. {answer.document['detector']}; height {row['height_mm']:g} mm, field "
+            f"{2 * row['half_fov_deg']:g} deg, {row['units']} units."
         )
 
 
-def _columns(form: Format, shown: tuple[str, ...], row: type) -> tuple[str, ...]:
-    return shown if form is Format.TABLE else columns_of(row)
+def _cells(row: Mapping[str, Any]) -> dict[str, Any]:
+    errors = {
+        "flight": row["flight_error_deg"],
+        "low": row["flight_low_deg"],
+        "high": row["flight_high_deg"],
+        "own": row["own_error_deg"],
+        "bound": row["bound_deg"],
+    }
+    return {
+        "design": row["design"],
+        "pipeline": f"{row['extractor']} + {row['model']}",
+        **{n: None if error is None else float(f"{error:.2g}") for n, error in errors.items()},
+    }
 
 
 def _measured(

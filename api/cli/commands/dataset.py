@@ -16,11 +16,11 @@ from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError, given
 from api.schema import words
-from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
+from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery, SoldSensor
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.scores import ScoresQuery
 from api.schema.table import columns_of, csv_of
-from api.service.datasets import choose, rows_of
+from api.service.datasets import as_sold, choose, rows_of
 from api.service.datasets import errors as dataset_errors
 from api.service.datasets import realism as besides_built
 from benchmark import datasets
@@ -48,6 +48,7 @@ CONDITIONS = ("condition", "bound_deg", "description")
 PAIRS = ("detector", "mask", "studies", "datasets", "reason")
 FILES = ("file", "bytes")
 BUILT = ("dataset", "rms_deg", "id", "name", "accuracy_rms_deg", "accuracy_ratio", "explanation")
+SOLD = ("hardware", "name", "depth", "stated_deg", "simulated_deg", "ratio")
 
 NameArgument = Annotated[
     str,
@@ -243,6 +244,21 @@ def realism(
     answer = ask(besides_built, asked)
     shown = BUILT if form is Format.TABLE else columns_of(BuiltSensorRow)
     emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
+
+
+@app.command()
+def sold(form: FormatOption = Format.TABLE) -> None:
+    """Simulate built sensors as they are sold, beside their published accuracy.
+
+    The depth of calibration and the bench are those that a sensor states, or assumed by its class;
+    both errors are of the statistic that it states. Where they differ by more than a factor of two,
+    the reason names the depth or bench that agrees.
+    """
+    answer = ask(as_sold)
+    shown = SOLD if form is Format.TABLE else columns_of(SoldSensor)
+    emit(answer.rows(), shown, form, document=answer.document, title="Built sensors as sold")
+    if form is Format.TABLE:
+        say(answer.document["words"])
 
 
 @app.command()

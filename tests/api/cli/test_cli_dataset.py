@@ -148,3 +148,20 @@ def test_errors_refuse_what_they_cannot_give(sampled, arguments, said):
     shown = sunatlas("errors", *arguments)
     assert shown.exit_code != 0
     assert said in f"{shown.stderr}{shown.exception}"
+
+
+def test_built_sensors_stand_beside_their_figures_as_sold():
+    shown = sunatlas("sold", "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    document = json.loads(shown.stdout)
+    rows = {row["hardware"]: row for row in document["items"]}
+    assert rows["C13"]["stated_deg"] == 1.5
+    assert rows["C13"]["simulated_deg"] == rows["C13"]["uncalibrated_deg"]
+    assert all(bool(row["reason"]) != bool(row["agrees"]) for row in rows.values())
+    near = sum(row["agrees"] is True for row in rows.values())
+    assert document["words"].startswith(f"{near} of {len(rows)} built sensors")
+    without = {row["hardware"]: row["reason"] for row in document["left_out"]}
+    assert "not measured" in without["P12"]
+    assert not without.keys() & rows.keys()
+    said = " ".join(sunatlas("sold").stdout.split())
+    assert document["words"] in said

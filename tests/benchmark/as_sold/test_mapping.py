@@ -40,11 +40,11 @@ def test_data_sets_have_the_detector_and_mask_of_the_sensor_or_stand_for_it(rows
 
 def test_settings_are_those_that_rows_state():
     known = as_sold()
-    assert (known["C12"].depth, known["C13"].depth) == ("table", "none")
+    assert (known["C12"].depth, known["C13"].depth) == ("table", "uncalibrated")
     assert known["C12"].dataset == known["C13"].dataset  # one unit, with and without its table
     assert (known["C08"].depth, known["C08"].depth_basis) == ("constants", "stated")
     assert (known["C47"].depth, known["C47"].depth_basis) == ("table", "family")  # by C02
-    assert (known["C53"].depth, known["C53"].depth_basis) == ("none", "assumed")
+    assert (known["C53"].depth, known["C53"].depth_basis) == ("uncalibrated", "assumed")
     assert (known["C55"].depth, known["C55"].depth_basis) == ("constants", "assumed")
     assert (known["P15"].depth, known["P15"].depth_basis) == ("table", "assumed")
     assert {name for name, one in known.items() if one.level == "flight"} == {"C15", "C18"}

@@ -77,7 +77,7 @@ def test_higher_masks_drop_out_one_by_one_with_a_reason():
     assert high < middle < low
     assert "single-aperture" in high
     assert "n-slit" not in middle
-    with pytest.raises(UnfitError, match=r"it needs .* mm beside the middle"):
+    with pytest.raises(UnfitError, match="beside the middle"):
         preset("n-slit", Place(1.0))
 
 
