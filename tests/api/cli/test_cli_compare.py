@@ -67,5 +67,5 @@ def test_another_height_is_measured_and_what_does_not_fit_is_named():
         for row in json.loads(sunatlas("--equal", "--format", "json").stdout)["items"]
     }
     # a spot moves by 1.2/0.5 times as much
-    ratio = published["multi-slit"]["own_error_deg"] / rows["multi-slit"]["own_error_deg"]
+    ratio = published["single-aperture"]["own_error_deg"] / rows["single-aperture"]["own_error_deg"]
     assert ratio == pytest.approx(1.2 / 0.5, rel=0.5)
