@@ -1,4 +1,4 @@
-"""How a built sensor is simulated, by a rule that was written before anything was measured.
+"""How a built sensor is simulated: by a rule that stood before all of them were measured.
 
 - **Sensor**: a study's own data set that stands for it (``realism.csv``), else a standard one of
   its detector and mask, else one that stands for it; none in orbit. Of several, before others:
