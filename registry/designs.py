@@ -85,7 +85,7 @@ def gather(facts: Facts, measurements: Measurements) -> tuple[Place, ...]:
     for product in products():
         if product.detector in order["detector"] and product.mask in order["mask"]:
             built.setdefault((product.detector, product.mask), []).append(product)
-    measured = measurements.by_architecture
+    measured, on_ground = measurements.by_architecture, measurements.on_ground.by_architecture
     every = sorted(
         {*studies, *built, *measured},
         key=lambda pair: (order["detector"][pair[0]], order["mask"][pair[1]]),
@@ -93,7 +93,8 @@ def gather(facts: Facts, measurements: Measurements) -> tuple[Place, ...]:
     found = []
     for pair in every:
         there, advice = studies.get(pair, {}), tuple(a for a in facts.advice if a.means(pair))
-        designs = _designs(facts.taxonomy, pair, there, measured.get(pair, ()), advice, order)
+        rows = measured.get(pair, ()), on_ground.get(pair, ())
+        designs = _designs(facts.taxonomy, pair, there, *rows, advice, order)
         found.append(Place(pair, there, tuple(built.get(pair, ())), designs, advice))
     return tuple(found)
 
@@ -103,6 +104,7 @@ def _designs(  # noqa: PLR0917 - what a design is gathered from
     architecture: Architecture,
     studies: Mapping[str, Study],
     rows: Iterable[MeasuredPipeline],
+    on_ground: Iterable[MeasuredPipeline],
     advice: Sequence[Advice],
     order: Order,
 ) -> tuple[Design, ...]:
@@ -110,6 +112,10 @@ def _designs(  # noqa: PLR0917 - what a design is gathered from
     for row in rows:
         measured.setdefault((row.extractor_taxonomy, row.stages), []).append(row)
     methods = [_Methods(study, taxonomy) for study in studies.values()]
+    for row in on_ground:
+        key = row.extractor_taxonomy, row.stages
+        if key not in measured and _users(methods, *key)[1]:
+            measured[key] = []
     found = {key: _users(methods, *key) for key in measured}
     for one in methods:
         for extractor, model in itertools.product(one.extractors, one.models):

@@ -179,10 +179,14 @@ class MeasuredPipeline:
 class Measurements:
     """All measured pipelines; make it once and pass it to many calls.
 
-    Pipelines without an error under the first condition are left out.
+    Pipelines without an error under the first condition are left out. What was measured `on_ground`
+    is a calibration that a study may have used, whether or not it was flown.
     """
 
-    def __init__(self, rows: Iterable[MeasuredPipeline] = ()) -> None:
+    def __init__(
+        self, rows: Iterable[MeasuredPipeline] = (), on_ground: Measurements | None = None
+    ) -> None:
+        self.on_ground = on_ground or self
         kept = [row for row in rows if row.nominal.rms_deg is not None]
         kept.sort(key=lambda r: (r.dataset, r.extractor, r.model))
         self.rows: tuple[MeasuredPipeline, ...] = tuple(kept)
@@ -200,4 +204,4 @@ class Measurements:
     @cached_property
     def _flown(self) -> Measurements:
         flown = (row.flown for row in self.rows)
-        return Measurements(row for row in flown if row is not None)
+        return Measurements((row for row in flown if row is not None), on_ground=self)

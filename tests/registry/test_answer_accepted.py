@@ -136,6 +136,15 @@ def test_nothing_asked_has_no_ranks_and_three_cards(published: Measurements) -> 
     assert all(("built by nobody" in card.words) == (not card.built) for card in cards[1:])
 
 
+def test_a_study_is_found_by_its_model_though_nobody_flew_it(published: Measurements) -> None:
+    flown = {row.stages for row in published.at("flight").by_architecture["PD", "Slit"]}
+    assert ("OCM", "SPM") not in flown
+    for evidence in ("any", "reported"):
+        answer = recommend({"model": "SPM", "evidence": evidence}, published)
+        (one,) = (a for a in answer.architectures if a.place.architecture == ("PD", "Slit"))
+        assert "Hales2002" in {report.key for report in one.reports}
+
+
 @pytest.mark.parametrize("number", [40, pytest.param(200, marks=pytest.mark.slow)])
 def test_drawn_answers_hide_no_report_and_compare_no_two_data_sets(
     number: int, survey: Facts, published: Measurements
