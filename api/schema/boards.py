@@ -57,7 +57,9 @@ class BestOfArchitecture(Shape):
     flight_high_deg: float | None = Field(description="Largest error in flight of a unit.")
     own_error_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     height_mm: float | None = Field(description="Height of mask or lens; null if there is none.")
-    own_at_1_mm_deg: float | None = Field(description="Own error scaled to a height of 1 mm.")
+    own_at_1_mm_deg: float | None = Field(
+        description="Own error at a height of 1 mm, as if all of it went with 1/height."
+    )
     flight_at_1_mm_deg: float | None = Field(description="Error in flight, scaled likewise.")
     own_se: float | None = Field(description="Relative standard error of the own error.")
     quoted_deg: float | None = Field(description="Error on odd units of the best on even units.")

@@ -164,10 +164,12 @@ class MaskAtEqualHeight(Shape):
     own_low_deg: float | None = Field(description="Smallest own error of a unit.")
     own_high_deg: float | None = Field(description="Largest own error of a unit.")
     flight_error_deg: float | None = Field(
-        description="Error in flight: geometric mean over sensor units."
+        description="Error in flight: geometric mean over sensor units above 95 % availability."
     )
-    flight_low_deg: float | None = Field(description="Smallest error in flight of a unit.")
-    flight_high_deg: float | None = Field(description="Largest error in flight of a unit.")
+    flight_low_deg: float | None = Field(
+        description="Smallest error in flight of a unit; null if one is below 95 % availability."
+    )
+    flight_high_deg: float | None = Field(description="Largest, likewise.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     reason: str = Field(description="Why there is no error; empty if there is one.")
 

@@ -30,7 +30,7 @@ def reason(answer: Answer, one: RankedArchitecture) -> str:
         said.append(_measured_words(answer, one.best, meets=meets))
         if not meets:
             said[-1] += _lacks(answer, one, 1)
-            said += _finer_at_times(one)
+            said += _partial_answer(one)
     sentence = "; ".join(said)
     if not one.place.is_built:
         sentence = f"measured here, never built: {sentence}"
@@ -74,8 +74,8 @@ def _measured_words(answer: Answer, best: Calibration, *, meets: bool) -> str:
     return said
 
 
-def _finer_at_times(one: RankedArchitecture) -> list[str]:
-    """Return what errs far less on the same data than the best, but answers too seldom."""
+def _partial_answer(one: RankedArchitecture) -> list[str]:
+    """Name the far more accurate pipeline of the same data set below 95 % availability, if any."""
     question = one.question
     if one.best is None or one.best.judged is None or one.best.pipeline is None:
         return []

@@ -1,9 +1,10 @@
 """How a built sensor is simulated: by a rule that stood before all of them were measured.
 
-- **Sensor**: a study's own data set that stands for it (``realism.csv``), else a standard one of
-  its detector and mask, else one that stands for it; none in orbit. Of several, before others:
-  behind a mask those whose field lacks at most 5 deg of the stated one, then those that stand for
-  it, then the nearest field, then the first by name. A stated field that is narrower narrows it.
+- **Data set**: the own sensor of a study that ``realism.csv`` pairs with it; else a standard data
+  set of its detector and mask; else any that ``realism.csv`` pairs with it. Data sets in orbit are
+  left out. Of several, the first in this order: half field at most 5 deg below the stated one
+  (sensors with a mask), paired in ``realism.csv``, nearest field, name. Where the stated field is
+  narrower, poses and tests are drawn within it.
   Heights and pixels are the data set's: the one height that is stated and measured is its own.
 - **Depth** of calibration: what its row says (``readings.csv``), or that of its family. Assumed
   where nothing is said: uncalibrated for cells without a mask that are sold, which go by the
@@ -144,7 +145,7 @@ def _simulated(one: BuiltSensor) -> AsSold:
 
 
 def _data_sets(one: BuiltSensor) -> list[str]:
-    """Return the data sets that may stand for a sensor, the one to take first."""
+    """Return the data sets that can simulate a sensor, the preferred one first."""
     paired = {
         name
         for name, match in hardware_matches().items()

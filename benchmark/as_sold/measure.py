@@ -63,7 +63,7 @@ def root_mean_square(error: Floats) -> float:
     return float(np.sqrt(np.mean(np.square(error))))
 
 
-#: What is stated of an error: of the angles of all answers, degrees.
+#: Statistics of the angle between answer and true direction, degrees, by the name in the table.
 STATISTICS: Mapping[str, Callable[[Floats], float]] = MappingProxyType(
     {
         "mean": lambda error: float(np.mean(error)),

@@ -59,7 +59,11 @@ class Place:
                 "expected a height above 0 mm and a half field between 0 and 90 deg; got "
                 f"{self.height_mm:g} mm and {self.half_fov_deg:g} deg"
             )
-        self.require(0.0)
+        if self.spare_mm < 0.0:
+            raise UnfitError(
+                f"light would leave the array: it moves by {self.shift_mm:.3g} mm and the array "
+                f"has {self.shift_mm + self.spare_mm:.3g} mm on each side of its middle"
+            )
 
     @property
     def shift_mm(self) -> float:
@@ -81,7 +85,7 @@ class Place:
         if reach_mm > self.spare_mm:
             raise UnfitError(
                 f"light would leave the array: it needs {reach_mm:.3g} mm beside the middle and "
-                f"has {max(self.spare_mm, 0.0):.3g} mm"
+                f"has {self.spare_mm:.3g} mm"
             )
 
 

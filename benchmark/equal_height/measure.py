@@ -117,7 +117,7 @@ _NUMBERS = (
 def _score(
     built: Preset, condition: str, pipeline: tuple[type[Extractor], Scored], unit: int
 ) -> Score | None:
-    """Return the score of a pipeline on a unit; None for one that answers too seldom."""
+    """Return the score of a pipeline on a unit; None below 95 % availability."""
     extractor, model = pipeline
     task = Task(built, condition, extractor, (model,), unit, all_observable=True)
     (outcome,) = score_task(task).outcomes

@@ -81,6 +81,8 @@ def _show(answer: Document) -> None:
     for row in rows:
         if row["flight_error_deg"] is None:
             say(f"{row['design']}: {row['reason'] or 'below 95 % availability in flight'}")
+        elif row["flight_low_deg"] is None:
+            say(f"{row['design']}: in flight without its units below 95 % availability")
     for row in rows[:1]:
         say(
             f"Errors in deg. {answer.document['detector']}; height {row['height_mm']:g} mm, field "

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from benchmark.datasets import get
-from benchmark.equal_height.designs import DESIGNS
+from benchmark.equal_height.designs import DESIGNS, DETECTOR
 
 
 def sunatlas(*arguments):
@@ -37,9 +37,12 @@ def test_every_mask_at_equal_height_is_shown_by_its_error_in_flight():
     for row in rows:
         assert row["bound_deg"] < row["own_error_deg"] < row["flight_error_deg"]
         assert DESIGNS[row["design"]].mask == row["mask"]
-    assert "512 x 512 pixels of 12 um" in document["detector"]
+    array = f"{DETECTOR.columns} x {DETECTOR.rows} pixels of {1e3 * DETECTOR.pitch_mm:g} um"
+    assert array in document["detector"]
     said = " ".join(sunatlas("--equal").stdout.split())
     assert "height 0.5 mm, field 120 deg, 9 units" in said
+    (partly,) = (row["design"] for row in rows if row["flight_low_deg"] is None)
+    assert f"{partly}: in flight without its units below 95 % availability" in said
 
 
 @pytest.mark.parametrize(
