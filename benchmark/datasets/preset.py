@@ -21,7 +21,7 @@ from benchmark.datasets.realism import hardware_match
 from benchmark.datasets.repeats import REPEAT, Repeats, Rows
 from benchmark.datasets.samples import Samples
 from benchmark.datasets.units import assemble, tolerances
-from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
+from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao, pose_information
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
 from benchmark.simulator.flight.mission import Lifetime, Mission
@@ -30,7 +30,7 @@ from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern, SeesEarth, Sensor, UnitSpread
+from benchmark.simulator.sensor import FixedPattern, GainSpread, SeesEarth, Sensor, UnitSpread
 from benchmark.simulator.sensors.faces import Faces
 
 #: Splits that a field of directions is drawn for.
@@ -379,9 +379,16 @@ class Preset:
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
         """Cramer-Rao bounds of every sample of a split (see `benchmark.metrics.bounds.cramer_rao`).
 
-        With the unit known, and with what `references` tell of it. Parameters as `generate`.
+        With the unit known, and with what `references` and the poses of the calibration tell of
+        it. Parameters as `generate`.
         """
         light = self.condition(condition).irradiance
+        poses = None
+        if isinstance(self.sensor_for(condition, "calibration"), GainSpread):
+            calibrated = self.taken(condition, "calibration", self.scene(condition, "calibration"))
+            poses = pose_information(
+                *cast("tuple[GainSpread, Scene, FixedPattern]", next(calibrated))
+            )
         parts = [
             cramer_rao(
                 sensor,
@@ -391,6 +398,7 @@ class Preset:
                 self.bound_step_rad,
                 self.batch or BATCH,
                 self.offered,
+                poses,
             )
             for sensor, seen, pattern in self.taken(
                 condition, split, self.scene(condition, split, n)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,13 @@ from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern, Sensor, SharesNoise, UnitSpread
+from benchmark.simulator.sensor import (
+    FixedPattern,
+    GainSpread,
+    PixelSpread,
+    Sensor,
+    SharesNoise,
+)
 
 #: Half step of the central differences over direction, radians: small against the Sun's disc
 #: (4.65e-3), which smooths every edge of a shadow, and large against the distances between the
@@ -41,7 +48,7 @@ class Bound:
     observable
         (N,) bool.
     unit_angle_deg
-        (N,) as `angle_deg`, for who does not know the unit but what references tell of it; inf
+        (N,) as `angle_deg`, for who knows of the unit what references and poses tell; inf
         where the direction is not observable, or not then. None where it was not asked for, or
         the sensor's elements do not differ each by itself.
     fisher
@@ -95,12 +102,13 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
     step_rad: float = STEP_RAD,
     batch: int | None = None,
     references: References | None = None,
+    poses: Floats | None = None,
 ) -> Bound:
     """Return the Cramer-Rao bounds of the direction, with sunlight and stray light unknown.
 
     The first bound is for a known sensor unit, the second for a unit known only through its
-    `references`. Fixed pattern, assembly and albedo count as known in the first, so it holds for
-    every estimator, however well it is calibrated.
+    `references` and the poses of its calibration. Fixed pattern, assembly and albedo count as known
+    in the first, so it holds for every estimator, however well it is calibrated.
 
     Parameters
     ----------
@@ -112,6 +120,8 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
         Samples evaluated together, `BATCH` by default; the numbers do not depend on it.
     references
         Readings that tell of the unit; None for no bound of that kind.
+    poses
+        (K, P, P) what poses tell of each element of a few (`pose_information`); None for nothing.
 
     Raises
     ------
@@ -128,8 +138,12 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
 
     In the second bound gains and dark signals of the elements are nuisances, too, with the spread
     that remains after flat and dark readings. They are independent between elements, so
-    marginalising them adds `UnitSpread.unit_variance` to V, and offsets of columns add to the noise
-    that a column's elements share. The assembly stays known, and observability is decided with the
+    marginalising them adds a variance to V (`PixelSpread.unit_variance`), and offsets of columns
+    add to the noise that a column's elements share. Of a few elements the poses of the calibration
+    tell as much as flats do, and of their drifts all: with J the changes of a reading by an
+    element's unknowns (`GainSpread.gain_slopes`), the variance is ``J C J^T``, C inverse to what
+    references and poses tell of them. Of one pixel of many a pose tells next to nothing. The
+    assembly stays known, and observability is decided with the
     unit known.
 
     A direction is not observable if the matrix is singular, or if the derivatives do not describe
@@ -147,10 +161,56 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
         )
     size = batch or BATCH
     parts = [
-        _batch(sensor, scene.part(start, start + size), pattern, irradiance, step_rad, references)
+        _batch(
+            sensor,
+            scene.part(start, start + size),
+            pattern,
+            irradiance,
+            step_rad,
+            references,
+            poses,
+        )
         for start in range(0, len(scene), size)
     ]
     return Bound.join(parts)
+
+
+def pose_information(sensor: GainSpread, scene: Scene, pattern: FixedPattern) -> Floats:
+    """(K, P, P) information of poses on each element's unknowns, in the units of `gain_slopes`.
+
+    Sunlight and the Sun count as known at each pose, so it is at least what an estimator has.
+
+    Parameters
+    ----------
+    sensor, scene, pattern
+        The sensor as it was calibrated, the light of the poses, the unit.
+    """
+    seen = cast("Sensor", sensor)
+    mean = seen.expected(scene, pattern)
+    slopes = sensor.gain_slopes(mean, scene)
+    weighted = slopes / seen.variance(mean)[..., None]
+    return np.asarray(np.einsum("nkp,nkq->kpq", weighted, slopes))
+
+
+def unit_variance(
+    sensor: Sensor,
+    mean: Floats,
+    scene: Scene,
+    references: References,
+    poses: Floats | None = None,
+) -> Floats | None:
+    """Variance, in the shape of `mean`, that a unit adds to its readings where it is not known.
+
+    None for a sensor whose elements do not differ each by itself. Parameters as of `cramer_rao`.
+    """
+    if isinstance(sensor, GainSpread):
+        information = sensor.gain_information(references) + (0.0 if poses is None else poses)
+        slopes = sensor.gain_slopes(mean, scene)
+        left = np.linalg.inv(np.broadcast_to(information, (mean.shape[1], *information.shape[-2:])))
+        return np.asarray(np.einsum("nkp,kpq,nkq->nk", slopes, left, slopes))
+    if isinstance(sensor, PixelSpread):
+        return sensor.unit_variance(mean, scene, references)
+    return None
 
 
 def _turn(sun: Floats, first: Floats, second: Floats, x: Floats, y: Floats) -> Floats:
@@ -168,6 +228,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     irradiance: Irradiance,
     step_rad: float,
     references: References | None,
+    poses: Floats | None,
 ) -> Bound:
     count = len(scene)
     first, second = tangent_axes(scene.sun)
@@ -178,8 +239,8 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     if isinstance(sensor, SharesNoise):
         common = sensor.common_noise(whole.shape, None)
         unit_common = sensor.common_noise(whole.shape, references)
-    if references is not None and isinstance(sensor, UnitSpread):
-        unit = sensor.unit_variance(whole, scene, references)
+    if references is not None:
+        unit = unit_variance(sensor, whole, scene, references, poses)
 
     def moved(x: Floats, y: Floats) -> Scene:
         return scene.seen_from(_turn(scene.sun, first, second, x, y))

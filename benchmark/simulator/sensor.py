@@ -47,6 +47,17 @@ class Sensor(Protocol):
 class UnitSpread(Protocol):
     """A sensor whose elements differ from unit to unit each by itself: in gain and dark signal."""
 
+    def reference_readings(
+        self, pattern: FixedPattern, references: References, streams: NoiseStreams
+    ) -> dict[str, Floats]:
+        """Mean dark and flat readings of a unit, of all its elements; names end in the unit."""
+        ...
+
+
+@runtime_checkable
+class PixelSpread(UnitSpread, Protocol):
+    """A sensor of so many elements that a calibration pose tells next to nothing of each."""
+
     def unit_variance(
         self, expected: Floats, scene: Scene, references: References
     ) -> Floats | None:
@@ -57,10 +68,24 @@ class UnitSpread(Protocol):
         """
         ...
 
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """Mean dark and flat readings of a unit, of all its elements; names end in the unit."""
+
+@runtime_checkable
+class GainSpread(UnitSpread, Protocol):
+    """A sensor of a few elements: each calibration pose tells of the gain of those it lights."""
+
+    def gain_slopes(self, expected: Floats, scene: Scene) -> Floats:
+        """(N, K, P) change of the means `expected` (N, K) by what is unknown of each element.
+
+        Of P independent unknowns (its gain, how that drifts), each by one standard deviation over
+        units.
+        """
+        ...
+
+    def gain_information(self, references: References) -> Floats:
+        """(P, P) information on an element's unknowns before any pose, in the units of the slopes.
+
+        The spread over units, which is the identity, and the references.
+        """
         ...
 
 

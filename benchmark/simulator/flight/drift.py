@@ -92,11 +92,17 @@ class PhotodiodeDrift:
             "loss_per_year": self.loss_per_year + self.loss_per_year_spread * spread[1],
         }
 
-    def variance(self, light: Floats, warmer_k: Floats, age_years: Floats) -> Floats:
-        """Squared part of `light` (N, K) that the spread of the elements' drifts adds."""
+    def slopes(
+        self, gain_spread: float, light: Floats, warmer_k: Floats, age_years: Floats
+    ) -> Floats:
+        """(N, K, 3) changes of `light` (N, K) by one standard deviation of what elements differ by.
+
+        Of their relative gains, which have `gain_spread`, and of their drifts a kelvin and a year.
+        """
         warmed = self.gain_per_k_spread * warmer_k
-        aged = self.loss_per_year_spread * age_years
-        return np.asarray(light**2 * (warmed**2 + aged**2))
+        aged = -self.loss_per_year_spread * age_years
+        unknown = np.broadcast_arrays(np.asarray(gain_spread), warmed, aged, light)[:3]
+        return np.asarray(light[..., None] * np.stack(unknown, axis=-1))
 
     def factors(
         self, temperature_k: Floats, age_years: Floats, per_k: Floats, per_year: Floats

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,7 +14,7 @@ from benchmark.simulator.flight.drift import (
     dark_levels,
 )
 from benchmark.simulator.flight.time_series import with_times
-from benchmark.simulator.readout.currents import spread
+from benchmark.simulator.readout.currents import flat_information, gain_information
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -51,16 +50,16 @@ class DriftingSolarCellSensor(SolarCellSensor):
         dark = dark_levels(self.readout.dark, at.temperature_k)
         return np.asarray(self.readout.sunlit_ua * light * string * factor + dark[:, None])
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
-        """Squared microamperes that unknown currents and the spread of their drifts add.
-
-        References are taken at 25 deg C before the flight: they tell nothing of the drifts.
-        """
+    def gain_slopes(self, expected: Floats, scene: Scene) -> Floats:
+        """(N, K, 3) microamperes by the strings' currents and by their drifts."""
         at = with_times(scene, self)
         light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
-        parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
-        deviation = math.sqrt(math.fsum(part**2 for part in parts))
-        still = spread(self.readout, deviation, references)
         received = light / self.readout.sunlit_ua
         warmer = at.temperature_k[:, None] + self.cells.heating_k * received - REFERENCE_K
-        return still.variance(light) + self.drift.variance(light, warmer, at.age_years[:, None])
+        return self.drift.slopes(self.gain_spread, light, warmer, at.age_years[:, None])
+
+    def gain_information(self, references: References) -> Floats:
+        """(3, 3) of the spreads and the flats, which are taken before the flight."""
+        drift = self.drift
+        spreads = [self.gain_spread, drift.gain_per_k_spread, drift.loss_per_year_spread]
+        return gain_information(spreads, flat_information(self.readout, references))

@@ -13,7 +13,12 @@ from benchmark.simulator.flight.drift import (
     ThermalCycle,
 )
 from benchmark.simulator.flight.moved_heads import moved_heads
-from benchmark.simulator.flight.time_series import drift_variance, drifted, with_times
+from benchmark.simulator.flight.time_series import (
+    drift_information,
+    drift_slopes,
+    drifted,
+    with_times,
+)
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.optics.projection import ProjectedLight
 from benchmark.simulator.readout.references import References
@@ -79,8 +84,10 @@ class DriftingQuadrantSensor(QuadrantSensor):
         at = with_times(scene, self)
         return drifted(self.readout, self.photodiodes, self.receive(scene), pattern, at)
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
-        """Squared microamperes that unknown gains and the spread of their drifts add."""
-        return drift_variance(
-            self.readout, self.photodiodes, expected, with_times(scene, self), references
-        )
+    def gain_slopes(self, expected: Floats, scene: Scene) -> Floats:
+        """(N, 4, 3) microamperes by gains and by their drifts."""
+        return drift_slopes(self.readout, self.photodiodes, expected, with_times(scene, self))
+
+    def gain_information(self, references: References) -> Floats:
+        """(3, 3) of the spreads and the flats, which are taken before the flight."""
+        return drift_information(self.readout, self.photodiodes, references)

@@ -19,7 +19,7 @@ from benchmark.simulator.flight.drift import (
 )
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import ProjectedLight
-from benchmark.simulator.readout.currents import spread
+from benchmark.simulator.readout.currents import flat_information, gain_information
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.references import References, pixel_unit_variance
 from benchmark.simulator.scene import Scene
@@ -79,21 +79,24 @@ def drifted(
     return np.asarray(readout.sunlit_ua * light + dark[:, None])
 
 
-def drift_variance(
-    readout: CurrentReadout,
-    drift: PhotodiodeDrift,
-    expected: Floats,
-    at: TimedScene,
-    references: References,
+def drift_slopes(
+    readout: CurrentReadout, drift: PhotodiodeDrift, expected: Floats, at: TimedScene
 ) -> Floats:
-    """Squared microamperes that unknown gains and the spread of their drifts add to a mean (N, K).
+    """(N, K, 3) microamperes by one standard deviation of gains and of their drifts.
 
-    References are taken at 25 deg C before the flight: they tell nothing of the drifts.
+    Those a kelvin and a year; of means (N, K).
     """
     light = expected - dark_levels(readout.dark, at.temperature_k)[:, None]
-    still = spread(readout, readout.gain_mismatch, references)
-    warmer_k = (at.temperature_k - REFERENCE_K)[:, None]
-    return still.variance(light) + drift.variance(light, warmer_k, at.age_years[:, None])
+    warmer_k = at.temperature_k - REFERENCE_K
+    return drift.slopes(readout.gain_mismatch, light, warmer_k[:, None], at.age_years[:, None])
+
+
+def drift_information(
+    readout: CurrentReadout, drift: PhotodiodeDrift, references: References
+) -> Floats:
+    """(3, 3) information on an element's gain and its drifts, of which flats tell nothing."""
+    spreads = [readout.gain_mismatch, drift.gain_per_k_spread, drift.loss_per_year_spread]
+    return gain_information(spreads, flat_information(readout, references))
 
 
 @dataclass(frozen=True)
@@ -116,11 +119,13 @@ class DriftingFaceSensor(FaceSensor):
         at = with_times(scene, self)
         return drifted(self.readout, self.drift, self.receive(scene, pattern), pattern, at)
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
-        """Squared microamperes that unknown gains and the spread of their drifts add."""
-        return drift_variance(
-            self.readout, self.drift, expected, with_times(scene, self), references
-        )
+    def gain_slopes(self, expected: Floats, scene: Scene) -> Floats:
+        """(N, K, 3) microamperes by gains and by their drifts."""
+        return drift_slopes(self.readout, self.drift, expected, with_times(scene, self))
+
+    def gain_information(self, references: References) -> Floats:
+        """(3, 3) of the spreads and the flats, which are taken before the flight."""
+        return drift_information(self.readout, self.drift, references)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -13,12 +13,7 @@ from benchmark.seeds import generator
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.quantisation import reading_variance
-from benchmark.simulator.readout.references import (
-    ElementSpread,
-    References,
-    posterior,
-    readings_information,
-)
+from benchmark.simulator.readout.references import References, readings_information
 from benchmark.simulator.scene import Scene
 
 
@@ -32,13 +27,28 @@ def currents(readout: CurrentReadout, response: Floats, pattern: Mapping[str, Fl
     return np.asarray(readout.sunlit_ua * response * pattern["gain"] + readout.dark.level())
 
 
-def spread(readout: CurrentReadout, gain_spread: float, references: References) -> ElementSpread:
-    """Return what is unknown of a channel, in microamperes; dark currents are the design's."""
+def flat_information(readout: CurrentReadout, references: References) -> float:
+    """Return the information of the flats on a channel's relative gain; dark currents are known."""
     dark = readout.dark.level()
     light = references.level * (readout.full_scale_ua - dark)
     noise = math.sqrt(readout.electron_ua * (light + dark) + readout.noise_ua**2)
     codes = readings_information(noise / readout.step_ua, references.flats)
-    return posterior((gain_spread, 0.0), light, (codes / readout.step_ua**2, 0.0))
+    return codes * (light / readout.step_ua) ** 2
+
+
+def gain_information(spreads: Sequence[float], flats: float) -> Floats:
+    """(P, P) information on an element's gain and its drifts, in units of their spreads.
+
+    Parameters
+    ----------
+    spreads
+        Standard deviations over units, of the relative gain first.
+    flats
+        Information of the flats on the relative gain: they are taken before anything drifts.
+    """
+    known = np.eye(len(spreads))
+    known[0, 0] += flats * spreads[0] ** 2
+    return known
 
 
 class CurrentSensor:
@@ -64,10 +74,18 @@ class CurrentSensor:
         codes = reading_variance(expected / step, deviation, -top, top - 1.0)
         return np.asarray(codes * step**2)
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared microamperes that unknown gains, drawn with `gain_mismatch`, add."""
-        light = expected - self.readout.dark.level()
-        return spread(self.readout, self.readout.gain_mismatch, references).variance(light)
+    @property
+    def gain_spread(self) -> float:
+        """Standard deviation over units of an element's relative gain."""
+        return self.readout.gain_mismatch
+
+    def gain_slopes(self, expected: Floats, scene: Scene) -> Floats:  # noqa: ARG002 - the protocol's
+        """(N, K, 1) microamperes by one standard deviation of the gains."""
+        return self.gain_spread * (expected - self.readout.dark.level())[..., None]
+
+    def gain_information(self, references: References) -> Floats:
+        """(1, 1) of the spread and the flats."""
+        return gain_information([self.gain_spread], flat_information(self.readout, references))
 
     def reference_readings(
         self, pattern: Mapping[str, Floats], references: References, streams: NoiseStreams

@@ -11,9 +11,10 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.readout.currents import gain_information
 from benchmark.simulator.readout.detectors import DarkCurrent, Response
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.references import References, posterior
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.faces import Faces
@@ -160,15 +161,18 @@ class FrequencySensor(Faces):
         counts = expected * gate
         return counts_variance(counts, self.readout.spread_counts(counts)) / gate**2
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared hertz that unknown gains of the converters add."""
-        dark = self.readout.dark.level()
+    def gain_slopes(self, expected: Floats, scene: Scene) -> Floats:  # noqa: ARG002 - the protocol's
+        """(N, K, 1) hertz by one standard deviation of the converters' gains."""
+        light = expected - self.readout.dark.level()
+        return self.readout.gain_mismatch * light[..., None]
+
+    def gain_information(self, references: References) -> Floats:
+        """(1, 1) of the spread and the flats."""
         # a count of a flat varies by 1/6 on average: where the gate opens, and what it leaves over
         single = self.readout.spread_counts(np.ones(1))[0] ** 2 + 1.0 / 6.0
-        light = references.level * self.readout.sunlit_hz
-        information = references.flats * self.readout.gate_s**2 / float(single)
-        spread = posterior((self.readout.gain_mismatch, 0.0), light, (information, 0.0))
-        return spread.variance(expected - dark)
+        counts = references.level * self.readout.sunlit_hz * self.readout.gate_s
+        flats = references.flats * counts**2 / float(single)
+        return gain_information([self.readout.gain_mismatch], flats)
 
     def reference_readings(
         self, pattern: FixedPattern, references: References, streams: NoiseStreams

@@ -63,9 +63,9 @@ class OptoIsolatorSensor(CurrentSensor, Faces):
         light = collect(self.receive(scene, pattern), self.knee)
         return currents(self.readout, light / collect(np.ones(1), self.knee), pattern)
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
-        """Squared microamperes that unknown gains add; small spreads of their logarithm."""
-        return super().unit_variance(expected, scene, _dim(references))
+    def gain_information(self, references: References) -> Floats:
+        """(1, 1) of the spread and the dim flats; of small spreads of the gains' logarithm."""
+        return super().gain_information(_dim(references))
 
     def reference_readings(
         self, pattern: FixedPattern, references: References, streams: NoiseStreams

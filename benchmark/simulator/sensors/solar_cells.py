@@ -11,7 +11,7 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.readout.currents import CurrentSensor, currents, element_gains, spread
+from benchmark.simulator.readout.currents import CurrentSensor, currents, element_gains
 from benchmark.simulator.readout.detectors import CurrentReadout, Response
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
@@ -106,15 +106,11 @@ class SolarCellSensor(CurrentSensor, Faces):
         string = light * np.min(pattern["cells"], axis=1)
         return currents(self.readout, string * self.cells.temperature_factor(light), pattern)
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared microamperes that unknown currents of the strings add.
-
-        A string's spread is taken as a single cell's; that of its weakest cell is less.
-        """
+    @property
+    def gain_spread(self) -> float:
+        """That of a single cell; of a string, which has that of its weakest cell, it is less."""
         parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
-        deviation = math.sqrt(math.fsum(part**2 for part in parts))
-        known = spread(self.readout, deviation, references)
-        return known.variance(expected - self.readout.dark.level())
+        return math.sqrt(math.fsum(part**2 for part in parts))
 
     def reference_readings(
         self, pattern: FixedPattern, references: References, streams: NoiseStreams

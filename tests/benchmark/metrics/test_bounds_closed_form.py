@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from benchmark.metrics.bounds import Bound, cramer_rao
+from benchmark.metrics.bounds import Bound, cramer_rao, pose_information
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.readout.references import References
@@ -142,6 +142,54 @@ def test_what_is_unknown_of_a_unit_is_more_noise_in_the_second_bound_alone(flats
     assert found.unit_angle_deg is not None
     assert found.unit_angle_deg[0] == pytest.approx(bound_of(noisier).angle_deg[0], rel=1e-9)
     assert len(one.asked) == len(plain.asked), "both of the same signals"
+
+
+@dataclass
+class DriftingGains(Sensor):
+    """A `Sensor` whose channels each have a gain and a drift, unknown by 0.02 and 0.05."""
+
+    def gain_slopes(self, mean: Floats, scene: Scene) -> Floats:
+        age = scene.irradiance  # any number of a sample's own will do
+        return np.stack([0.02 * mean, 0.05 * mean * (age - 1.0)[:, None]], axis=-1)
+
+    def gain_information(self, references: References) -> Floats:
+        return np.diag([1.0 + references.flats * (0.02 / 0.04) ** 2, 1.0])
+
+    def reference_readings(self, *_: object) -> dict[str, Floats]:
+        return {}
+
+
+@pytest.mark.parametrize("flats", [0, 4])
+@pytest.mark.parametrize("poses", [0, 1, 30])
+def test_the_second_bound_is_that_of_reading_flats_and_poses_in_one_matrix(
+    flats: int, poses: int
+) -> None:
+    """Direction, light, stray light, five gains and five drifts, inverted at once."""
+    one = DriftingGains(sensor().sun, sensor().shape, LEVEL, HAZE, NOISE)
+    light = np.linspace(0.6, 1.5, poses)
+    calibration = Scene(np.tile(OBLIQUE, (poses, 1)), light, np.full(poses, LIGHT.stray))
+    scene = Scene(OBLIQUE[None], np.array([1.3]), np.array([LIGHT.stray]))
+    known = pose_information(one, calibration, {})
+    found = cramer_rao(  # type: ignore[arg-type]
+        one, scene, {}, LIGHT, references=References(flats=flats), poses=known
+    )
+    fisher = np.diag(
+        [0, 0, LIGHT.spread**-2, LIGHT.stray_spread**-2, *[0.02**-2] * 5, *[0.05**-2] * 5]
+    )
+    fisher[4:9, 4:9] += np.eye(5) * flats / 0.04**2
+    rows = [
+        (1.3, np.column_stack([1.3 * SLOPES, LEVEL, HAZE])),
+        *((i, np.zeros((5, 4))) for i in light),
+    ]
+    for irradiance, nuisances in rows:
+        mean = np.diag(irradiance * LEVEL + LIGHT.stray * HAZE)
+        columns = np.hstack([nuisances, mean, (irradiance - 1.0) * mean]) / NOISE[:, None]
+        fisher += columns.T @ columns
+    covariance = np.linalg.inv(fisher)[:2, :2]
+    assert found.unit_angle_deg is not None
+    assert found.unit_angle_deg[0] == pytest.approx(
+        math.degrees(math.sqrt(np.trace(covariance))), rel=1e-6
+    )
 
 
 def test_a_nuisance_known_well_costs_nothing_and_one_unknown_all_it_can() -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.metrics.bounds import cramer_rao
+from benchmark.metrics.bounds import cramer_rao, unit_variance
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import from_angles, tangent_axes
 from benchmark.simulator.readout.noise import NoiseStreams
@@ -96,7 +96,9 @@ def test_converters_known_by_flats_are_at_the_second_bound() -> None:
         gain = 1 + seen * weight / (weight + sensor.readout.gain_mismatch**-2)
         hertz = sensor.observe(one, unit, streams)
         expected = sensor.expected(one, unit)
-        variance = sensor.variance(expected) + sensor.unit_variance(expected, one, OFFERED)
+        left = unit_variance(sensor, expected, one, OFFERED)
+        assert left is not None
+        variance = sensor.variance(expected) + left
         squares.append(
             2 * np.mean(least_squares_deg(hertz, one, {**built, "gain": gain}, variance) ** 2)
         )

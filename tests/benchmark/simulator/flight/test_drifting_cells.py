@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
+from benchmark.metrics.bounds import unit_variance
 from benchmark.simulator.flight.drift import REFERENCE_K, PhotodiodeDrift
 from benchmark.simulator.flight.drifting_cells import DriftingSolarCellSensor
 from benchmark.simulator.flight.time_series import TimedScene
@@ -67,6 +68,6 @@ def test_what_is_not_known_of_the_unit_is_drawn_over_units() -> None:
     scene = at(REFERENCE_K - 80.0, 1.0)
     drawn = np.array([sensor.expected(scene, sensor.fixed_pattern(u)) for u in range(2000)])
     mean = drawn.mean(axis=0)
-    stated = sensor.unit_variance(mean, scene, References(flats=0, darks=0))
+    stated = unit_variance(sensor, mean, scene, References(flats=0, darks=0))
     lit = mean > 0.05 * mean.max()
     np.testing.assert_allclose(drawn.var(axis=0)[lit], stated[lit], rtol=0.15)
