@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.flight.drift import REFERENCE_K, ThermalCycle
+from benchmark.simulator.flight.dust import dust_shift_mm
 from benchmark.simulator.flight.orbit import CircularOrbit, sun_direction
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.ghosts import Ghost
@@ -96,7 +97,7 @@ class Mission:
     dark_swing
         Whether the dark signal follows the temperature (1) or not (0).
     dust_um
-        Diameter of a particle at the rim of an opening: of a lens, none.
+        Diameter of a particle at the rim of one opening (`dust_shift_mm`): of a lens, none.
     latency_ms, rate_deg_s
         Error of the time stamp, and how fast the satellite turns.
     sunspot_deg
@@ -292,11 +293,9 @@ class Lifetime:
 
     def at(self, moment: Moment, sensor: object) -> Moment:
         """Return a moment with what depends on the sensor: dust shifts the light of its opening."""
-        width = opening_mm(sensor)
-        if width is None or not self.mission.dust_um:
+        shift = dust_shift_mm(sensor, 1e-3 * self.mission.dust_um)
+        if not shift:
             return moment
-        # a disc of this area at the rim, half a width from the middle
-        shift = math.pi * (1e-3 * self.mission.dust_um) ** 2 / (8.0 * width)
         x, y, height = moment.shift_mm
         one, other = self.dust
         size = math.hypot(one, other)
@@ -383,12 +382,6 @@ def height_mm(sensor: object) -> float | None:
     camera = _camera(sensor)
     lens = getattr(camera, "lens", None)
     return getattr(lens if lens is not None else camera, "focal_length_mm", None)
-
-
-def opening_mm(sensor: object) -> float | None:
-    """Return the width of a mask's first opening; None of a sensor without."""
-    mask = getattr(_camera(sensor), "mask", None)
-    return None if mask is None else float(mask.apertures[0].width_mm)
 
 
 def _camera(sensor: object) -> Any:
