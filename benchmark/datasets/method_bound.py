@@ -12,11 +12,19 @@ if TYPE_CHECKING:
 
 
 def method_bound_deg(
-    preset: Preset, condition: str, context: frozenset[str], bound: Bound
+    preset: Preset,
+    condition: str,
+    context: frozenset[str],
+    bound: Bound,
+    *,
+    unit_known: bool = True,
 ) -> Floats | None:
     """Return the bound (N,) in degrees of a method that reads more than one sample's signal.
 
     None where the single samples' bound holds: of methods that read nothing but readings apart.
     """
     posterior = getattr(preset, "posterior_bound_deg", None)
-    return None if posterior is None else posterior(condition, context, bound)
+    if posterior is None:
+        return None
+    found: Floats | None = posterior(condition, context, bound, unit_known=unit_known)
+    return found

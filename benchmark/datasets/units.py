@@ -2,7 +2,8 @@
 
 Unit 0 is the standard one, whose errors the preset names. Its tolerances follow from them: an
 error of any other unit is uniform within ``sqrt(3)`` times its size in unit 0 (of two axes, the
-larger one's), which makes that size its standard deviation. Elements' own errors (gains, dark
+larger one's), which makes that size its standard deviation. Rates at which a head bends with
+temperature and creeps are drawn alike, each by its own size. Elements' own errors (gains, dark
 signal, normals, apertures) are drawn by each sensor for the unit's name.
 """
 
@@ -14,6 +15,7 @@ from collections.abc import Iterator
 from typing import Any, TypeVar, cast
 
 from benchmark.seeds import generator
+from benchmark.simulator.flight.drift import AssemblyDrift
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import Camera
 
@@ -56,6 +58,10 @@ def _assemble(value: Any, place: str, names: tuple[str | int, ...]) -> Any:
         stream = generator(*names, "assembly", place)
         share = 2.0 * stream.random(len(dataclasses.fields(Assembly))) - 1.0
         return _scale(tolerance_of(value), share.tolist())
+    if isinstance(value, AssemblyDrift):
+        rates = dataclasses.astuple(value)
+        share = 2.0 * generator(*names, "drift of the head", place).random(len(rates)) - 1.0
+        return AssemblyDrift(*(_WIDTH * r * s for r, s in zip(rates, share.tolist(), strict=True)))
     if isinstance(value, Camera):
         return value.assemble(_assemble(value.assembly, f"{place}.assembly", names))
     if not dataclasses.is_dataclass(value) or isinstance(value, type):

@@ -175,6 +175,36 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
     return Bound.join(parts)
 
 
+def _changed(scene: Scene, irradiance: Irradiance, step_rad: float) -> list[Scene]:
+    """Return a scene with the Sun a step to either side of both axes, brighter, and hazier."""
+    first, second = tangent_axes(scene.sun)
+    zero, step = np.zeros(len(scene)), np.full(len(scene), step_rad)
+    sides = [(step, zero), (-step, zero), (zero, step), (zero, -step)]
+    return [
+        *(scene.seen_from(_turn(scene.sun, first, second, x, y)) for x, y in sides),
+        # nuisances in units of their spread: their prior information is 1
+        replace(scene, irradiance=scene.irradiance + irradiance.spread),
+        replace(scene, stray=scene.stray + irradiance.stray_spread),
+    ]
+
+
+def reading_slopes(
+    sensor: Sensor, scene: Scene, pattern: FixedPattern, irradiance: Irradiance, step_rad: float
+) -> tuple[Floats, Floats]:
+    """Return how the means of a few elements change, (N, K, 4), and their variances (N, K).
+
+    By a radian along two tangent axes, and by one spread of sunlight and of stray light. Parameters
+    as of `cramer_rao`.
+    """
+    mean = sensor.expected(scene, pattern)
+    right, left, up, down, brighter, hazier = (
+        sensor.expected(one, pattern) for one in _changed(scene, irradiance, step_rad)
+    )
+    turns = [(right - left) / (2.0 * step_rad), (up - down) / (2.0 * step_rad)]
+    slopes = np.stack([*turns, brighter - mean, hazier - mean], axis=-1)
+    return np.asarray(slopes), np.asarray(sensor.variance(mean))
+
+
 def pose_information(sensor: GainSpread, scene: Scene, pattern: FixedPattern) -> Floats:
     """(K, P, P) information of poses on each element's unknowns, in the units of `gain_slopes`.
 
@@ -232,7 +262,6 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
 ) -> Bound:
     count = len(scene)
     first, second = tangent_axes(scene.sun)
-    zero, step = np.zeros(count), np.full(count, step_rad)
     whole = sensor.expected(scene, pattern)
     mean, own = whole.reshape(count, -1), sensor.variance(whole).reshape(count, -1)
     common = unit_common = unit = None
@@ -245,13 +274,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
     def moved(x: Floats, y: Floats) -> Scene:
         return scene.seen_from(_turn(scene.sun, first, second, x, y))
 
-    sides = [(step, zero), (-step, zero), (zero, step), (zero, -step)]
-    seen = [
-        *(moved(x, y) for x, y in sides),
-        # nuisances in units of their spread: their prior information is 1
-        replace(scene, irradiance=scene.irradiance + irradiance.spread),
-        replace(scene, stray=scene.stray + irradiance.stray_spread),
-    ]
+    seen = _changed(scene, irradiance, step_rad)
     signals = np.empty((len(seen), *mean.shape))
     for signal, one in zip(signals, seen, strict=True):
         signal[:] = sensor.expected(one, pattern).reshape(count, -1)

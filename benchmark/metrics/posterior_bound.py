@@ -61,12 +61,15 @@ def sun_information(fisher: Floats, *, irradiance_known: bool) -> Floats:
 
 
 def attitude_information(sun: Floats, information: Floats) -> Floats:
-    """Information (N, 3, 3) on turns of the body, axes of the body frame, 1/rad^2.
+    """Information (N, 3 + P, 3 + P) on turns of the body, axes of the body frame, 1/rad^2.
 
-    Of that on the direction (N, 2, 2) of the Sun (N, 3) along its tangent axes: of the turn about
-    the Sun it tells nothing.
+    Of that on the direction of the Sun (N, 3) along its tangent axes and on P things unknown,
+    (N, 2 + P, 2 + P): of the turn about the Sun it tells nothing.
     """
-    lever = _levers(sun)
+    extra = information.shape[1] - 2
+    lever = np.zeros((len(sun), 2 + extra, 3 + extra))
+    lever[:, :2, :3] = _levers(sun)
+    lever[:, 2:, 3:] = np.eye(extra)
     return np.asarray(np.swapaxes(lever, 1, 2) @ information @ lever)
 
 
@@ -100,7 +103,9 @@ def single_bound(sun: Floats, information: Floats) -> Floats:
     return _angles_deg(_levers(sun), np.asarray(covariance, dtype=np.float64))
 
 
-def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:
+def recursive_bound(
+    sun: Floats, information: Floats, motion: Motion, known: Floats | None = None
+) -> Floats:
     """Bounds (N,) of the direction, degrees, for who knows all readings up to each sample.
 
     The state is the attitude's error, about the axes of the inertial frame, where it stands still,
@@ -108,16 +113,19 @@ def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:
     the attitude by ``A^T J e dt``: A from the inertial to the body frame at the step's end, J the
     right Jacobian of the step's rotation. The estimator knows how each reading follows from the
     truth, the noise of all of them and the deviation of the bias when switched on; of where the
-    body looks at first it knows nothing, and of how it moves what the gyroscope tells.
+    body looks at first it knows nothing, and of how it moves what the gyroscope tells. What is
+    unknown of the sensor's unit is a state that stands still.
 
     Parameters
     ----------
     sun : ndarray, shape (N, 3)
         True unit vectors, body frame.
-    information : ndarray, shape (N, 3, 3)
-        As `single_bound`; 0 where nothing is read, as in eclipse.
+    information : ndarray, shape (N, 3 + P, 3 + P)
+        As `attitude_information`; 0 where nothing is read, as in eclipse.
     motion : Motion
         Between the samples.
+    known : ndarray, shape (P, P), optional
+        Information on the P unknowns of the unit before the first sample.
 
     Returns
     -------
@@ -133,7 +141,11 @@ def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:
     if not (steps > 0).all():
         raise ValueError("time_s must rise from sample to sample")
     turned = np.swapaxes(motion.turn, 1, 2)
-    values, axes = np.linalg.eigh(turned @ information @ motion.turn)
+    extra = information.shape[1] - 3
+    inertial = np.zeros_like(information)
+    inertial[:, :3, :3] = motion.turn
+    inertial[:, 3:, 3:] = np.eye(extra)
+    values, axes = np.linalg.eigh(np.swapaxes(inertial, 1, 2) @ information @ inertial)
     # rows C with C^T C the information: so many readings of unit noise
     rows = np.sqrt(np.maximum(values, 0.0))[:, :, None] * np.swapaxes(axes, 1, 2)
     rotation = np.radians(rotation_vectors_deg(motion.turn[1:], motion.turn[:-1]))
@@ -141,29 +153,32 @@ def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:
     white = math.radians(gyro.angle_random_walk_deg_sqrt_h) ** 2 / (_HOUR_S * steps)
     walk = (math.radians(gyro.bias_walk_deg_h_sqrt_h) / _HOUR_S**1.5) ** 2 * steps
     one = np.eye(3)
-    covariance = np.zeros((6, 6))
+    covariance = np.zeros((6 + extra, 6 + extra))
     covariance[:3, :3] = PRIOR_RAD**2 * one
-    covariance[3:, 3:] = (math.radians(gyro.bias_deg_h) / _HOUR_S) ** 2 * one
+    covariance[3:6, 3:6] = (math.radians(gyro.bias_deg_h) / _HOUR_S) ** 2 * one
+    if known is not None:
+        covariance[6:, 6:] = np.linalg.inv(known)
     attitude = np.empty((len(sun), 3, 3))
-    forward = np.eye(6)
+    forward = np.eye(6 + extra)
     for n, reading in enumerate(rows):
         if n:
-            covariance[3:, 3:] += walk[n - 1] * one
-            forward[:3, 3:] = drive[n - 1]
+            covariance[3:6, 3:6] += walk[n - 1] * one
+            forward[:3, 3:6] = drive[n - 1]
             covariance = forward @ covariance @ forward.T
             covariance[:3, :3] += white[n - 1] * drive[n - 1] @ drive[n - 1].T
-        if values[n, 2] > 0:
+        if values[n, -1] > 0:
             covariance = _update(covariance, reading)
         attitude[n] = covariance[:3, :3]
     return _angles_deg(_levers(sun) @ motion.turn, attitude)
 
 
 def _update(covariance: Floats, rows: Floats) -> Floats:
-    """Covariance (6, 6) after readings of unit noise that rows (3, 3) of the attitude give."""
-    common = covariance[:, :3] @ rows.T
-    gain = np.linalg.solve(np.eye(3) + rows @ common[:3], common.T).T
-    left = np.eye(6)
-    left[:, :3] -= gain @ rows
+    """Covariance after readings of unit noise: rows (R, 3 + P) of the attitude and the unknowns."""
+    slopes = np.zeros((len(rows), len(covariance)))
+    slopes[:, :3], slopes[:, 6:] = rows[:, :3], rows[:, 3:]
+    common = covariance @ slopes.T
+    gain = np.linalg.solve(np.eye(len(rows)) + slopes @ common, common.T).T
+    left = np.eye(len(covariance)) - gain @ slopes
     joseph = left @ covariance @ left.T + gain @ gain.T
     return np.asarray((joseph + joseph.T) / 2.0)
 

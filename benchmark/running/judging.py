@@ -46,14 +46,15 @@ def score_answers(
     if task.condition == ON_BENCH:
         return PipelineOutcome(name, "", _pooled(answers, data))
     test, (own,) = data.splits["test"], answers.test
-    posterior = _posterior_deg(task, model, data)
+    posterior = _posterior_deg(task, model, data, unit_known=True)
+    unit_posterior = _posterior_deg(task, model, data, unit_known=False)
     found = score(
         own,
         test.sun,
         data.bound_deg if posterior is None else posterior,
         data.observable,
         None if answers.repeat is None else _repeat(answers.repeat, data),
-        bound_unit_deg=data.bound_unit_deg if posterior is None else posterior,
+        bound_unit_deg=data.bound_unit_deg if unit_posterior is None else unit_posterior,
     )
     if task.condition != task.preset.conditions[0]:
         return PipelineOutcome(name, "", found)
@@ -75,12 +76,14 @@ def _pooled(answers: Answers, data: ConditionData) -> Score:
     return replace(pooled, aligned_deg=aligned)
 
 
-def _posterior_deg(task: Task, model: Scored, data: ConditionData) -> Floats | None:
+def _posterior_deg(
+    task: Task, model: Scored, data: ConditionData, *, unit_known: bool
+) -> Floats | None:
     """Bound (N,) of a method that knows the samples before or other instruments; None else."""
     if data.bound is None or not model.about.context:
         return None
     context = frozenset(model.about.context)
-    return method_bound_deg(task.preset, task.condition, context, data.bound)
+    return method_bound_deg(task.preset, task.condition, context, data.bound, unit_known=unit_known)
 
 
 def _repeat(predicted: Floats, data: ConditionData) -> Floats:

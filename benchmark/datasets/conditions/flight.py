@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from algorithms.context import CONTEXT
 from algorithms.contract import Floats
 from benchmark.datasets.conditions.flight_bounds import posterior_bound
+from benchmark.datasets.conditions.flight_unknowns import Same, unit_angle_deg, unknowns
 from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import DRAWN, Preset, drawn_split
@@ -32,7 +33,7 @@ from benchmark.simulator.flight.orbit import (
 )
 from benchmark.simulator.flight.time_series import DriftingSensor, TimedScene
 from benchmark.simulator.light.sun_disc import tangent_axes
-from benchmark.simulator.sensor import SeesEarth
+from benchmark.simulator.sensor import GainSpread, SeesEarth
 from benchmark.simulator.sensors.faces import Faces
 
 #: Said in every card: what the bound of a time series does not cover.
@@ -196,6 +197,12 @@ def _leg(flight: Flight, split: Split) -> Leg:
     return flight._fly(split)  # noqa: SLF001 - cached here: a dataclass method cannot be
 
 
+@lru_cache(8)
+def _sample_bound(kept: Same, condition: str, split: str, n: int | None) -> Bound:
+    preset: FlightPreset = kept.it
+    return Preset.bound(preset, condition, split, n)
+
+
 @dataclass(frozen=True)
 class FlightPreset(Preset):
     """A dataset in the order of time; `directions` is a `Flight`, every sensor a drifting one.
@@ -313,8 +320,25 @@ class FlightPreset(Preset):
             "magnetic_field_inertial_nT": leg.field_nt,
         }
 
+    def sample_bound(self, condition: str, split: str, n: int | None = None) -> Bound:
+        """Bounds as `Preset.bound`, of a head whose drift and creep are known."""
+        return _sample_bound(Same(self), condition, split, n)
+
+    def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
+        """As `Preset.bound`; drift and creep are unknown where the unit is, on the test split."""
+        single = self.sample_bound(condition, split, n)
+        if split != "test":
+            return single
+        own = unknowns(self, condition)
+        if own is None:
+            return single
+        if isinstance(self.condition(condition).sensor, GainSpread):
+            single = replace(single, unit_angle_deg=None)  # gains are in the unknowns
+        first = replace(own, fisher=own.fisher[: len(single.observable)])
+        return replace(single, unit_angle_deg=unit_angle_deg(first, single))
+
     def posterior_bound_deg(
-        self, condition: str, context: frozenset[str], bound: Bound
+        self, condition: str, context: frozenset[str], bound: Bound, *, unit_known: bool = True
     ) -> Floats | None:
         """Return the bound (N,) of a method that reads these columns of the context, degrees.
 
@@ -322,7 +346,14 @@ class FlightPreset(Preset):
         state (`benchmark.datasets.conditions.flight_bounds.posterior_bound`).
         """
         sequential = {"time_s", "rate_deg_s"} <= context
-        return posterior_bound(self, condition, context, sequential=sequential, bound=bound)
+        return posterior_bound(
+            self,
+            condition,
+            context,
+            sequential=sequential,
+            bound=bound,
+            unit_known=unit_known,
+        )
 
     def generate(self, condition: str, split: str, n: int | None = None) -> Samples:
         """As `Preset.generate`, with the context's columns."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, cast
 
 from algorithms.contract import Floats
+from benchmark.datasets.conditions.flight_unknowns import Same, unknowns
 from benchmark.datasets.conditions.instruments import Instruments
 from benchmark.metrics.bounds import Bound
 from benchmark.metrics.posterior_bound import (
@@ -33,12 +33,14 @@ def posterior_bound(
     *,
     sequential: bool,
     bound: Bound | None = None,
+    unit_known: bool = True,
 ) -> Floats | None:
     """Bound (N,) of the test split, degrees, for pipelines that a sample's own bound is not for.
 
-    The unit, its drift and light from the Earth count as known, as in the bound of one sample. A
-    sequential pipeline knows all readings up to each sample, the gyroscope's among them, and the
-    strength of sunlight. A magnetometer's and a horizon sensor's readings count where the pipeline
+    Light from the Earth counts as known, and so do the unit and its drift, as in the bound of one
+    sample, or what references and the calibration split tell of them (`Unknowns`). A sequential
+    pipeline knows all readings up to each sample, the gyroscope's among them, and the strength of
+    sunlight. A magnetometer's and a horizon sensor's readings count where the pipeline
     reads their counterparts in the inertial frame and the almanac's Sun, too (nadir alone says
     nothing of the Sun); of their errors only the white noise is unknown.
 
@@ -52,6 +54,8 @@ def posterior_bound(
         Whether it carries a state from sample to sample.
     bound
         That of one sample, of the test split, where it is known already; else it is computed.
+    unit_known
+        Whether the unit, its drift and creep are.
 
     Returns
     -------
@@ -71,47 +75,43 @@ def posterior_bound(
     single: Bound = preset.bound(condition, "test") if bound is None else bound
     if single.fisher is None:
         raise ValueError("a posterior bound needs a bound with Fisher matrices (cramer_rao)")
-    return _posterior(_Same(preset), condition, _Same(single), sequential, magnetometer, horizon)
-
-
-@dataclass(frozen=True)
-class _Same:
-    """An object that is equal to itself alone, for `lru_cache`."""
-
-    it: Any
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.it is self.it
-
-    def __hash__(self) -> int:
-        return id(self.it)
+    return _posterior(
+        Same(preset), condition, Same(single), sequential, magnetometer, horizon, unit_known
+    )
 
 
 # every model of a board that reads the same instruments asks for the same one
 @lru_cache(maxsize=8)
 def _posterior(  # noqa: PLR0917 - lru_cache tells calls by place and by name apart
-    kept_preset: _Same,
+    kept_preset: Same,
     condition: str,
-    kept_bound: _Same,
+    kept_bound: Same,
     sequential: bool,
     magnetometer: bool,
     horizon: bool,
+    unit_known: bool,
 ) -> Floats:
     """Return the bound as `posterior_bound`, which says what is known; read-only."""
     preset, single = kept_preset.it, kept_bound.it
     flight = preset.flight
     leg = flight.leg("test")
-    read = sun_information(single.fisher, irradiance_known=sequential)
+    own = None if unit_known else unknowns(preset, condition)
+    if own is None:
+        read, known = sun_information(single.fisher, irradiance_known=sequential), None
+    elif sequential:
+        read, known = own.information(irradiance_known=True), own.known
+    else:
+        read, known = own.direction(irradiance_known=False), None
     information = attitude_information(leg.sun_body, read)
     if magnetometer:
         field_nt = rotate(leg.turn, _true_field_nt(preset, condition, leg))
-        information = information + vector_information(field_nt, flight.magnetometer_nt)
+        information[:, :3, :3] += vector_information(field_nt, flight.magnetometer_nt)
     if horizon:
         deviation = math.tan(math.radians(flight.horizon_deg))
-        information = information + vector_information(leg.nadir_body, deviation)
+        information[:, :3, :3] += vector_information(leg.nadir_body, deviation)
     if sequential:
         motion = Motion(leg.turn, leg.time_s, flight.gyro)
-        found = recursive_bound(leg.sun_body, information, motion)
+        found = recursive_bound(leg.sun_body, information, motion, known)
     else:
         found = single_bound(leg.sun_body, information)
     found.flags.writeable = False

@@ -11,7 +11,7 @@ _GROUND = under_a_filter(ccd_multi_slit.PRESET, 60.0)
 
 PRESET = in_orbit(
     name="ccd-multi-slit-orbit",
-    version=2,
+    version=3,
     drawn_as=1,
     ground=_GROUND,
     setups=lines_aloft(_GROUND, SPACER),

@@ -10,7 +10,7 @@ _GROUND = ccd_single_aperture.PRESET
 
 PRESET = in_orbit(
     name="ccd-orbit",
-    version=7,
+    version=8,
     drawn_as=5,  # what changed since drew nothing anew
     ground=_GROUND,
     setups=frames_aloft(_GROUND, SPACER),

@@ -11,7 +11,7 @@ _GROUND = qpd_single_aperture.PRESET
 
 PRESET = in_orbit(
     name="qpd-orbit",
-    version=2,
+    version=3,
     drawn_as=1,
     ground=_GROUND,
     setups=quadrants_aloft(_GROUND, SPACER, PHOTODIODES),

@@ -50,7 +50,7 @@ def dust_shift_mm(sensor: object, diameter_mm: float) -> float:
     width = min(first.width_mm, first.height_mm)
     d = min(diameter_mm, width / 2.0)
     area = math.pi * d * d / 4.0
-    return area * (width - d) / 2.0 / (math.sqrt(whole * lit) - area)
+    return float(area * (width - d) / 2.0 / (math.sqrt(whole * lit) - area))
 
 
 def _direction(opening: Aperture) -> float | None:

@@ -138,3 +138,17 @@ def test_a_mask_that_lies_on_its_glass_takes_it_along() -> None:
     glass = np.array([camera.glass.thickness_mm for camera in cameras])
     assert (gaps < 0.5).any()
     np.testing.assert_allclose(glass, np.minimum(gaps, 0.5), rtol=1e-12)
+
+
+def test_heads_of_other_units_bend_and_creep_by_rates_of_their_own() -> None:
+    """Uniform, with the standard unit's size as standard deviation, on average none."""
+    rates = np.array(
+        [
+            astuple(PRESETS["qpd-orbit"].for_unit(n).setups["nominal"].sensor.assembly)
+            for n in range(1, 301)
+        ]
+    )
+    own = np.array(astuple(PRESETS["qpd-orbit"].setups["nominal"].sensor.assembly))
+    np.testing.assert_allclose(rates.std(axis=0), np.abs(own), rtol=0.12)
+    assert (np.abs(rates.mean(axis=0)) < 0.25 * np.abs(own)).all()
+    assert (np.abs(rates).max(axis=0) <= np.sqrt(3.0) * np.abs(own)).all()
