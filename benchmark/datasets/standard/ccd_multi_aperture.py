@@ -16,7 +16,7 @@ _SENSOR = behind(_MASK, 0.75, replace(ccd(512, 0.012), sunlit_e=40_000.0), wides
 
 PRESET = many_spots(
     name="ccd-multi-aperture",
-    version=6,
+    version=7,
     drawn_as=5,
     detector="CCD",
     mask="Multi-Ap.",

@@ -9,7 +9,7 @@ _MASK = crossed_pairs(4.6, (0.7, 0.9), width_mm=0.1, length_mm=8.2, thickness_mm
 
 PRESET = line_arrays(
     name="ccd-multi-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="CCD",
     mask="Multi-Slit",

@@ -12,7 +12,7 @@ _SENSOR = behind(_MASK, 1.8, ccd(1024, 0.014), sun=SUN)
 
 PRESET = line_arrays(
     name="ccd-periodic",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="CCD",
     mask="Multi-Slit",

@@ -13,7 +13,7 @@ _SENSOR = pixels.window(_MASK, 2.0, pixels.ccd(512, 0.013, prnu=0.005))
 
 PRESET = pixels.windows(
     name="ccd-single-aperture",
-    version=5,
+    version=6,
     drawn_as=4,
     detector="CCD",
     mask="Single-Ap.",

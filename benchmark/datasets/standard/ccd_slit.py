@@ -10,7 +10,7 @@ _SENSOR = behind(_MASK, 3.5, ccd(1024, 0.014), sun=SUN)
 
 PRESET = line_arrays(
     name="ccd-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="CCD",
     mask="Slit",

@@ -10,7 +10,7 @@ _MASK = v_slit((-3.3, 0.5), 45.0, width_mm=0.1, length_mm=7.2, thickness_mm=0.0)
 
 PRESET = line_arrays(
     name="ccd-v-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="CCD",
     mask="V-Slit",

@@ -9,7 +9,7 @@ _RULER = periodic(16, 0.32, width_mm=0.15, length_mm=5.8, thickness_mm=0.01)
 
 PRESET = line_arrays(
     name="ccd-vernier",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="CCD",
     mask="Encoded",

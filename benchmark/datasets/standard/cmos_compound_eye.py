@@ -19,7 +19,7 @@ _MASK = compound_eye(
 
 PRESET = many_spots(
     name="cmos-compound-eye",
-    version=6,
+    version=7,
     drawn_as=5,
     detector="CMOS",
     mask="Encoded",

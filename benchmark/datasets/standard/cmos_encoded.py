@@ -14,7 +14,7 @@ _MASK = spacing_coded(
 
 PRESET = many_spots(
     name="cmos-encoded",
-    version=6,
+    version=7,
     drawn_as=5,
     detector="CMOS",
     mask="Encoded",

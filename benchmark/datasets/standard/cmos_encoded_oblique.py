@@ -13,7 +13,7 @@ _MASK = oblique_coded(_ORDERS, pitch_mm=1.86, cell_mm=0.14, diameter_mm=0.066, t
 
 PRESET = many_spots(
     name="cmos-encoded-oblique",
-    version=2,
+    version=3,
     drawn_as=1,
     detector="CMOS",
     mask="Encoded",

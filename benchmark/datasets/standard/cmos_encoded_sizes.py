@@ -14,7 +14,7 @@ _MASK = spacing_and_size_coded(13, **_GROUP, **_PLACES, thickness_mm=0.01)
 
 PRESET = many_spots(
     name="cmos-encoded-sizes",
-    version=2,
+    version=3,
     drawn_as=1,
     detector="CMOS",
     mask="Encoded",

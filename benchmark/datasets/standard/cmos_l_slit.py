@@ -16,7 +16,7 @@ _SENSOR = pixels.window(_MASK, 1.2, _DETECTOR, window_px=(96, 96))
 
 PRESET = pixels.windows(
     name="cmos-l-slit",
-    version=5,
+    version=6,
     drawn_as=4,
     detector="CMOS",
     mask="L-Slit",

@@ -14,7 +14,7 @@ _SENSOR = behind(_MASK, 1.0, cmos(1024, 0.01, sunlit_e=16_000.0), widest_deg=69.
 
 PRESET = many_spots(
     name="cmos-multi-aperture",
-    version=6,
+    version=7,
     drawn_as=5,
     detector="CMOS",
     mask="Multi-Ap.",

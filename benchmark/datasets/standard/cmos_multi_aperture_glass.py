@@ -17,7 +17,7 @@ _SENSOR = replace(_OPEN, camera=replace(_OPEN.camera, glass=GLASS))
 
 PRESET = many_spots(
     name="cmos-multi-aperture-glass",
-    version=2,
+    version=3,
     drawn_as=1,
     detector="CMOS",
     mask="Multi-Ap.",

@@ -10,7 +10,7 @@ _MASK = n_slit(3.0, 45.0, width_mm=0.1, length_mm=6.4, thickness_mm=0.0)
 
 PRESET = line_arrays(
     name="cmos-n-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="CMOS",
     mask="N-Slit",

@@ -12,7 +12,7 @@ _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixe
 
 PRESET = pixels.windows(
     name="cmos-single-aperture",
-    version=5,
+    version=6,
     drawn_as=4,
     detector="CMOS",
     mask="Single-Ap.",

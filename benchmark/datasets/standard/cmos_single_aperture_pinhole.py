@@ -13,7 +13,7 @@ _LIGHT = Irradiance(stray=2e-5, stray_spread=4e-6)
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-pinhole",
-    version=5,
+    version=6,
     drawn_as=4,
     detector="CMOS",
     mask="Single-Ap.",

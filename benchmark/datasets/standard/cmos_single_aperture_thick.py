@@ -13,7 +13,7 @@ _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixe
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-thick",
-    version=2,
+    version=3,
     drawn_as=1,
     detector="CMOS",
     mask="Single-Ap.",

@@ -12,7 +12,7 @@ _SENSOR = pixels.window(_MASK, 1.2, _DETECTOR, window_px=(64, 96))
 
 PRESET = pixels.windows(
     name="cmos-slit",
-    version=5,
+    version=6,
     drawn_as=4,
     detector="CMOS",
     mask="Slit",

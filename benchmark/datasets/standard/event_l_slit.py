@@ -21,7 +21,7 @@ _LINES = ((-_CORNER_MM, 0.0, _WIDTH_MM),)
 
 PRESET = event_array(
     name="event-l-slit",
-    version=5,
+    version=6,
     drawn_as=4,
     mask="L-Slit",
     sensor=_SENSOR,

@@ -10,7 +10,7 @@ _SENSOR = behind(hole(0.1, 0.01), 0.6, events=20, pitch_mm=0.025)
 
 PRESET = event_array(
     name="event-single-aperture",
-    version=5,
+    version=6,
     drawn_as=4,
     mask="Single-Ap.",
     sensor=_SENSOR,

@@ -19,7 +19,7 @@ _READOUT = amplifiers(sunlit_ua=10.0, noise_ua=0.005, full_scale_ua=12.0)
 
 PRESET = code_dial(
     name="pd-code-dial",
-    version=4,
+    version=5,
     drawn_as=3,
     units=(
         "microamperes, float64 (N, 18): of the dial along x five coarse tracks (Gray code, most "

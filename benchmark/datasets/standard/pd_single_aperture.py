@@ -18,7 +18,7 @@ _OFF = "12 um of glue, window 20 and -15 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-single-aperture",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PD",
     mask="Single-Ap.",

@@ -23,7 +23,7 @@ _OFF = "focal length 2.5 % long, slits 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PD",
     mask="Slit",

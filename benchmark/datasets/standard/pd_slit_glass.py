@@ -23,7 +23,8 @@ _OFF = "focal length 2.5 % long, slits 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="pd-slit-glass",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="PD",
     mask="Slit",
     readings=f"photodiodes {diodes.QUADRANTS}; Q2 and Q4 share a slit, Q1 and Q3 the other",

@@ -10,7 +10,7 @@ _MASK = slit_row(_PLACES_MM, width_mm=0.2, length_mm=4.6, thickness_mm=0.05)
 
 PRESET = line_arrays(
     name="pda-multi-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PDA",
     mask="Multi-Slit",

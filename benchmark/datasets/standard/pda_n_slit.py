@@ -9,7 +9,7 @@ _MASK = n_slit(2.2, 45.0, width_mm=0.2, length_mm=5.0, thickness_mm=0.01)
 
 PRESET = line_arrays(
     name="pda-n-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PDA",
     mask="N-Slit",

@@ -9,7 +9,7 @@ _MASK = slit_row((0.0,), width_mm=0.2, length_mm=11.6, thickness_mm=0.02)
 
 PRESET = line_arrays(
     name="pda-slit",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PDA",
     mask="Slit",

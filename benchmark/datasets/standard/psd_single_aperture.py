@@ -17,7 +17,7 @@ _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="psd-single-aperture",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PSD",
     mask="Single-Ap.",

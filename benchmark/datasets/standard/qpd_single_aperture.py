@@ -16,7 +16,8 @@ _OFF = "focal length 2.5 % long, aperture 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="qpd-single-aperture",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="QPD",
     mask="Single-Ap.",
     readings=diodes.QUADRANTS,

@@ -21,7 +21,8 @@ _OFF = "25 um of glue, window 50 and -40 um off centre"
 
 PRESET = diodes.masked_photodiodes(
     name="qpd-single-aperture-glass",
-    version=1,
+    version=2,
+    drawn_as=1,
     detector="QPD",
     mask="Single-Ap.",
     readings=diodes.QUADRANTS,
