@@ -58,7 +58,7 @@ class FaceReadings:
 
     Attributes
     ----------
-    design : ndarray, shape (K, 15)
+    design : ndarray, shape (K, 16)
         As `algorithms.filtering.readings_kernel.faces` takes it.
     albedo : ndarray, shape (12,)
         Likewise.
@@ -120,7 +120,9 @@ class FaceReadings:
             for k in range(faces):
                 c, up = cosines[:, k], (cosines[:, k] > 0).astype(np.float64)
                 tilts = [up * (sun @ axis) for axis in axes[k]]
-                own.append(np.column_stack([np.ones(len(c)), c, c**2, c**3, *tilts, c * warmth]))
+                own.append(
+                    np.column_stack([np.ones(len(c)), c, c**2, c**3, *tilts, c * warmth, up])
+                )
                 shared.append(earth_columns(sun, known[:, 3:6], looks[k])[:, 1:])
                 right.append(signals[:, k] / full[k])
             columns = own[0].shape[1]
@@ -143,12 +145,14 @@ class FaceReadings:
             for k in range(faces):
                 off = (numbers[k, 4] * axes[k][0] + numbers[k, 5] * axes[k][1]) / slope[k]
                 looks[k] = (looks[k] + off) / np.linalg.norm(looks[k] + off)
-        design = np.zeros((faces, 15))
+        design = np.zeros((faces, 16))
         for k in range(faces):
             design[k, 0:3], design[k, 3:6], design[k, 6:9] = looks[k], *axes[k]
             response = numbers[k, [0, 1, 2, 3, 6]] * full[k]
             design[k, 9:14] = response
-            design[k, 14] = response[1:4].sum()
+            # the published response of photodiodes has a step where light begins (eq:kellycos)
+            design[k, 15] = numbers[k, 7] * full[k]
+            design[k, 14] = response[1:4].sum() + design[k, 15]
         # the kernel scales what the Earth adds by the response at 1
         ratio = float(np.mean(full / design[:, 14]))
         return cls(design, albedo * ratio, middle)

@@ -26,8 +26,9 @@ def faces(  # noqa: PLR0915, PLR0917 - values and derivatives together
     """Signals (B, K) of faces and their derivatives (B, K, n).
 
     Parameters are the light's level, the albedo's, then a gain a face, two tilts a face. `design`
-    (K, 15) holds of each face normal (3), axes across it (6), dark signal, coefficients of the
-    cosine, its square and its cube, and of the cosine times warmth, and full signal. `albedo` (12,)
+    (K, 16) holds of each face normal (3), axes across it (6), dark signal, coefficients of the
+    cosine, its square and its cube, and of the cosine times warmth, full signal, and a step where
+    the Sun begins to light it. `albedo` (12,)
     holds coefficients of what the Earth adds, over the full signal, of ``z^i u^j`` (i, j = 0..2),
     ``w``, ``w u`` and ``w z``: z the cosine of the Sun's zenith distance below the satellite, u the
     face's towards nadir, w towards the Sun's side of it.
@@ -54,7 +55,7 @@ def faces(  # noqa: PLR0915, PLR0917 - values and derivatives together
             light, slope = 0.0, 0.0
             if c > 0.0:
                 linear = design[k, 10] + design[k, 13] * known[6]
-                light = ((design[k, 12] * c + design[k, 11]) * c + linear) * c
+                light = ((design[k, 12] * c + design[k, 11]) * c + linear) * c + design[k, 15]
                 slope = (3.0 * design[k, 12] * c + 2.0 * design[k, 11]) * c + linear
             u = nx * known[3] + ny * known[4] + nz * known[5]
             w = c + u * zenith

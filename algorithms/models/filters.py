@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from algorithms.filtering.filters import Filter
 
 
-_READS: dict[str, Any] = {"accepts": frozenset(FeatureKind), "context": CONTEXT}
+_READS: dict[str, Any] = {"accepts": frozenset(FeatureKind), "context": CONTEXT, "version": 2}
 #: Of filters that the survey names in its section on online methods, and says no more of.
 _ONLINE: dict[str, Any] = {"taxonomy": "None", "labels": ("model:mnc",), **_READS}
 

@@ -97,6 +97,7 @@ class AngularLoss(CalibratedCompensation):
             "panoramic",
             "sun-and-albedo-inputs + basic",
             "sun-and-earth + basic",
+            "computed-earth + basic",
         ),
     )
     frontal: ClassVar[bool] = False

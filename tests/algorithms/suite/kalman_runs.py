@@ -22,7 +22,7 @@ STEP_S = 10.0
 
 def cube() -> FaceReadings:
     """Six cosines of 100 units under perpendicular light, no Earth."""
-    design = np.zeros((6, 15))
+    design = np.zeros((6, 16))
     for k, normal in enumerate(CUBE):
         first = np.roll(normal, 1)
         design[k, 0:3], design[k, 3:6], design[k, 6:9] = normal, first, np.cross(normal, first)

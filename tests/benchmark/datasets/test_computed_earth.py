@@ -1,0 +1,42 @@
+"""The Earth's light as it is computed for a compensation, against the simulator's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from algorithms.compensations.interference.computed_earth import ComputedEarth, earth_light
+from benchmark import datasets
+from benchmark.simulator.light.environment import Earth
+
+
+@pytest.mark.parametrize("altitude_km", [400.0, 600.0, 1200.0])
+def test_light_of_the_ground_is_the_simulators(altitude_km: float) -> None:
+    """By other lines of sight, with nadir, Sun and faces anywhere."""
+    rng = np.random.default_rng(11)
+    sun, nadir, faces = (
+        v / np.linalg.norm(v, axis=1, keepdims=True)
+        for v in (rng.standard_normal((count, 3)) for count in (400, 400, 5))
+    )
+    found = 0.3 * earth_light(sun, nadir, faces, altitude_km)
+    exact = Earth(altitude_km=altitude_km, rings=40, spokes=120).response(
+        sun, nadir, faces, "cosine"
+    )
+    assert exact.max() > 0.05
+    np.testing.assert_allclose(found, exact, atol=1e-3)
+
+
+def test_a_flown_cube_is_left_with_a_small_part_of_the_earths_light() -> None:
+    """Nadir is read to half a degree, faces warm and age since they were calibrated."""
+    preset: Any = datasets.get("pd-orbit")
+    known = preset.generate("nominal", "calibration")
+    flown = preset.generate("nominal", "test")
+    sensor = preset.condition("nominal").sensor
+    clean = ComputedEarth(sensor.normals).fit(known.observations, known.sun, known.context)
+    assert clean.reflectance_ == pytest.approx(0.3, abs=0.01)
+    earth = preset.scene("nominal", "test").albedo * sensor.readout.sunlit_ua
+    lit = earth.max(axis=1) > 1.0
+    left = flown.observations - clean.transform(flown.observations, flown.context) - earth
+    assert np.sqrt(np.mean(left[lit] ** 2)) < 0.08 * np.sqrt(np.mean(earth[lit] ** 2))
