@@ -20,7 +20,7 @@ _COUNTER = FrequencyCounter(
 
 PRESET = faces(
     name="ltf-maskless-cube",
-    version=3,
+    version=4,
     drawn_as=2,
     detector="LTF",
     normals=CUBE,

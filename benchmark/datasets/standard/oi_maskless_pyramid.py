@@ -17,7 +17,7 @@ _SENSOR = OptoIsolatorSensor(QUADRANTS, _READOUT, normal_error_deg=1.0)
 
 PRESET = faces(
     name="oi-maskless-pyramid",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="OI",
     normals=QUADRANTS,

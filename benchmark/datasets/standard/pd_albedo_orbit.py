@@ -12,7 +12,7 @@ from benchmark.simulator.flight.attitude import Tumble
 _GROUND = replace(qpd_maskless_pyramid.PRESET, detector="PD")
 _FLOWN = in_orbit(
     name="pd-albedo-orbit",
-    version=2,
+    version=3,
     drawn_as=1,
     ground=_GROUND,
     setups=photodiodes_aloft(_GROUND, PHOTODIODES),

@@ -13,7 +13,8 @@ from benchmark.simulator.sensors.faces import CUBE
 
 PRESET = faces(
     name="pd-maskless-cube",
-    version=2,
+    version=3,
+    drawn_as=2,
     detector="PD",
     normals=CUBE,
     order=OF_THE_CUBE,

@@ -10,7 +10,7 @@ _NORMALS = pyramid(6, 30.0)
 
 PRESET = faces(
     name="pd-maskless-pyramid",
-    version=4,
+    version=5,
     drawn_as=3,
     detector="PD",
     normals=_NORMALS,

@@ -10,7 +10,7 @@ _GROUND = pd_maskless_cube.PRESET
 
 PRESET = in_orbit(
     name="pd-orbit",
-    version=4,
+    version=5,
     drawn_as=2,  # what changed since drew nothing anew
     ground=_GROUND,
     setups=photodiodes_aloft(_GROUND, PHOTODIODES),

@@ -9,7 +9,7 @@ from benchmark.simulator.sensors.faces import CUBE
 
 PRESET = faces(
     name="pva-maskless-panels",
-    version=3,
+    version=4,
     drawn_as=2,
     detector="PVA",
     normals=CUBE,

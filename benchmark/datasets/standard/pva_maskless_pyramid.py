@@ -8,7 +8,7 @@ from benchmark.datasets.conditions.solar_faces import cells_on, solar_conditions
 
 PRESET = faces(
     name="pva-maskless-pyramid",
-    version=2,
+    version=3,
     drawn_as=1,
     detector="PVA",
     normals=QUADRANTS,

@@ -11,7 +11,7 @@ _NORMALS = sphere(16)
 
 PRESET = faces(
     name="pva-maskless-sphere",
-    version=3,
+    version=4,
     drawn_as=2,
     detector="PVA",
     normals=_NORMALS,

@@ -14,7 +14,7 @@ _CELLS = PhotodiodeDrift(
 
 PRESET = in_orbit(
     name="pva-orbit",
-    version=2,
+    version=3,
     drawn_as=1,
     ground=_GROUND,
     setups=photodiodes_aloft(_GROUND, _CELLS, "cells"),

@@ -13,7 +13,8 @@ from benchmark.datasets.conditions.faces import (
 
 PRESET = faces(
     name="qpd-maskless-pyramid",
-    version=3,
+    version=4,
+    drawn_as=3,
     detector="QPD",
     normals=QUADRANTS,
     order=TOWARDS_QUADRANTS,
