@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.compensated import CalibratedCompensation
 from algorithms.calibration.cube_currents import SURELY_LIT
+from algorithms.calibration.ground_light import ground_light
 from algorithms.contract import AboutCompensation, FeatureKind, Floats, UnusableDataError
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
@@ -20,16 +21,11 @@ from algorithms.row_arithmetic import normalise
 
 ITERATIONS = 4
 """Steps from the direction that all light has to the Sun's; each leaves a share of the Earth's."""
-EARTH_RADIUS_KM = 6371.0
 
-#: Rings and spokes of lines of sight to the visible ground.
-_RINGS, _SPOKES = 8, 24
 #: Steps of least squares to the sunlight.
 _STEPS = 4
 #: Cosine to the other side up to which a face may still see the Sun.
 _PAST = 0.02
-#: Samples whose ground is lit together; memory only.
-_BATCH = 256
 #: Cosines of incidence at which a response is learnt.
 _KNOTS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0])
 #: Weight of what is expected of a bend, none, against that of all samples.
@@ -250,42 +246,10 @@ def earth_light(
         In units of perpendicular sunlight.
     """
     faces = np.asarray(normals, dtype=np.float64)
-    sight, solid_angle = _lines_of_sight(altitude_km)
-    reach = EARTH_RADIUS_KM / (EARTH_RADIUS_KM + altitude_km)
-    # in units of the distance to the Earth's centre
-    distance = sight[:, 2] - np.sqrt(np.maximum(sight[:, 2] ** 2 - 1.0 + reach**2, 0.0))
-    ground = (distance[:, None] * sight - [0.0, 0.0, 1.0]) / reach
     out = np.empty((len(sun), len(faces)))
-    for start in range(0, len(sun), _BATCH):
-        part = slice(start, start + _BATCH)
-        frame = _frames(sun[part], nadir[part])
-        local_sun = np.einsum("nij,nj->ni", frame, sun[part])
-        local_faces = np.einsum("nij,kj->nki", frame, faces)
-        lit = np.maximum(local_sun @ ground.T, 0.0) * (solid_angle / math.pi)
-        seen = np.maximum(local_faces @ sight.T, 0.0)
+    for rows, directions, light in ground_light(sun, nadir, altitude_km):
+        seen = np.maximum(directions @ faces.T, 0.0)
         if response is not None:
             seen = np.interp(seen, _KNOTS, response)
-        out[part] = np.einsum("nj,nkj->nk", lit, seen)
+        out[rows] = np.einsum("nj,njk->nk", light, seen)
     return out
-
-
-def _lines_of_sight(altitude_km: float) -> tuple[Floats, Floats]:
-    """Directions (J, 3) about the nadir, which is z, over the visible ground; solid angles (J,)."""
-    reach = EARTH_RADIUS_KM / (EARTH_RADIUS_KM + altitude_km)
-    edge = math.sqrt(1.0 - reach**2)
-    nodes, shares = np.polynomial.legendre.leggauss(_RINGS)
-    cosine = np.repeat(edge + (1.0 - edge) * (nodes + 1.0) / 2.0, _SPOKES)
-    turn = np.tile(2.0 * math.pi * (np.arange(_SPOKES) + 0.5) / _SPOKES, _RINGS)
-    sine = np.sqrt(1.0 - cosine**2)
-    sight = np.column_stack([sine * np.cos(turn), sine * np.sin(turn), cosine])
-    return sight, np.repeat(shares * (1.0 - edge) / 2.0, _SPOKES) * (2.0 * math.pi / _SPOKES)
-
-
-def _frames(sun: Floats, nadir: Floats) -> Floats:
-    """(N, 3, 3) rotations whose z is the nadir and whose x is on the Sun's side of it."""
-    across = sun - (sun * nadir).sum(axis=1, keepdims=True) * nadir
-    other = np.eye(3)[np.abs(nadir).argmin(axis=1)]
-    other = other - (other * nadir).sum(axis=1, keepdims=True) * nadir
-    still = (across**2).sum(axis=1, keepdims=True) < 1e-12
-    x = normalise(np.where(still, other, across))
-    return np.stack([x, np.cross(nadir, x), nadir], axis=1)

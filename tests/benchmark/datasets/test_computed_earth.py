@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from algorithms.compensations.interference.computed_earth import ComputedEarth, earth_light
+from algorithms.compensations.interference.computed_earth_balance import ComputedEarthBalance
+from algorithms.extractors.currents.photodiode import VoltageBalance
 from benchmark import datasets
 from benchmark.simulator.light.environment import Earth
 
@@ -40,3 +42,28 @@ def test_a_flown_cube_is_left_with_a_small_part_of_the_earths_light() -> None:
     lit = earth.max(axis=1) > 1.0
     left = flown.observations - clean.transform(flown.observations, flown.context) - earth
     assert np.sqrt(np.mean(left[lit] ** 2)) < 0.08 * np.sqrt(np.mean(earth[lit] ** 2))
+
+
+def test_balances_of_flown_quadrants_are_nearly_those_without_an_earth() -> None:
+    """Against the same readings, noise and all, under a black Earth."""
+    preset: Any = datasets.get("qpd-orbit")
+    splits = {
+        (condition, split): preset.generate(condition, split)
+        for condition in ("nominal", "no-albedo")
+        for split in ("calibration", "test")
+    }
+    balance = {key: VoltageBalance().extract(one.observations) for key, one in splits.items()}
+    known, flown = splits["nominal", "calibration"], splits["nominal", "test"]
+    geometry = preset.geometry
+    clean = ComputedEarthBalance(
+        geometry.focal_length_mm, geometry.aperture_width_mm, geometry.half_fov_deg
+    ).fit(balance["nominal", "calibration"], known.sun, known.context)
+    lit = ~flown.context["eclipse"]
+    before, after = (
+        np.sqrt(np.nanmean((found - balance["no-albedo", "test"])[lit] ** 2))
+        for found in (
+            balance["nominal", "test"],
+            clean.transform(balance["nominal", "test"], flown.context),
+        )
+    )
+    assert after < 0.2 * before
