@@ -57,7 +57,7 @@ class Curve(CurveRow):
     floor_high_deg: float | None = Field(description="Upper end of the 90 % range of floors.")
     exponent: float | None = Field(description="Exponent b of the fitted law.")
     misfit: float | None = Field(description="Relative residual of the fitted law.")
-    bound_deg: float = Field(description="Bound for a unit known by darks and flats.")
+    bound_deg: float = Field(description="Bound for a unit known only through its calibration.")
     bench_deg: float | None = Field(description="Error of the standard bench; not in the curve.")
     all_deg: list[float | None] = Field(description="Own error with all poses, by sensor unit.")
     draws: int = Field(description="Random draws of poses, over all units.")

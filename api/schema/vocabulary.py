@@ -18,7 +18,7 @@ MEANINGS: Mapping[str, str] = {
     "basis": "Basis of the value: where it was read, or how inferred.",
     "bound_deg": "RMS Cramer-Rao bound for a known sensor unit, degrees.",
     "bound_unit_deg": (
-        "RMS Cramer-Rao bound for a unit known only through dark and flat frames, degrees."
+        "RMS Cramer-Rao bound for a unit known only through its calibration, degrees."
     ),
     "caption": "Caption of the figure in the survey.",
     "category": "Category of that value.",

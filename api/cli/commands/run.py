@@ -66,9 +66,9 @@ def run(
 
     Each pipeline of the study is scored on every data set of its sensor. Columns: assumed lists
     what the study does not state, with the rule that fills it; bound is the Cramer-Rao bound for a
-    known sensor unit; bound unit is the bound for a unit known only through its dark and flat
-    frames; over bound is error divided by bound. Parts of the study that are not implemented are
-    listed on stderr, and in JSON under "gaps". The exit code is 1 if nothing can run.
+    known sensor unit; bound unit is the bound for a unit known only through its calibration; over
+    bound is error divided by bound. Parts of the study that are not implemented are listed on
+    stderr, and in JSON under "gaps". The exit code is 1 if nothing can run.
 
     Published results are reused if code and data are unchanged. New results are kept in the local
     store (see --store), so that an interrupted run can be continued.

@@ -182,7 +182,7 @@ def _rungs(ladder: Mapping[str, Any] | None) -> Iterator[str]:
         )
     yield (
         f"  bound: {digits(ladder['bound_deg'])} deg with the unit known, "
-        f"{digits(ladder['bound_unit_deg'])} deg with the unit known by its darks and flats"
+        f"{digits(ladder['bound_unit_deg'])} deg with the unit known only through its calibration"
     )
 
 
