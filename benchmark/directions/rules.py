@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, cast, get_args
+from typing import TYPE_CHECKING, Literal, cast, get_args
 
 from benchmark.results.csv_tables import StoreError
 from survey_data.table_records import read_records
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 Kind = Literal["duel", "paper", "untried"]
 
@@ -18,10 +21,12 @@ FILE = Path(__file__).parent / "rules.csv"
 COLUMNS = ("id", "specific", "kind", "question", "first", "second", "boards", "rule")
 #: What decides where two families of methods meet on data sets.
 DUEL = (
-    "Of each family the best is chosen on half of the units of a data set and quoted on the other. "
+    "Of each family the two that lead on the standard unit are scored on ten units; the better is "
+    "chosen on the even ones and quoted on the odd. "
     "It pays where the first family has the smaller error, by more than 3 % and beyond the scatter "
     "of units (5 %), on three quarters of the data sets that tell the two apart, two at least; it "
-    "does not pay where the second has; else it depends on the data set."
+    "does not pay where the second has; else it depends on the data set, and where fewer than two "
+    "tell them apart it is open."
 )
 
 
@@ -46,6 +51,36 @@ class Rule:
     def text(self) -> str:
         """The rule in words."""
         return DUEL if self.kind == "duel" else self.rule
+
+    @property
+    def families(self) -> tuple[str, str]:
+        """Selectors of both families."""
+        return self.first, self.second
+
+    def is_on(self, preset: Preset) -> bool:
+        """Say whether the two meet on a data set."""
+        return selects(
+            self.boards,
+            {
+                "mask": preset.mask,
+                "observation": str(preset.observation),
+                "context": "flight" if preset.context_columns else "ground",
+            },
+        )
+
+
+def selects(selector: str, facts: Mapping[str, str]) -> bool:
+    """Say whether ``field=a|b`` names these facts; ``field=!a|b`` all others, "" all."""
+    if not selector:
+        return True
+    field, names = selector.split("=")
+    named = facts[field] in names.removeprefix("!").split("|")
+    return named != names.startswith("!")
+
+
+def is_of(family: str, extractor: str, model: str) -> bool:
+    """Say whether a pipeline belongs to a family; of a chain the model at its end counts."""
+    return selects(family, {"extractor": extractor, "model": model.rsplit(" + ", maxsplit=1)[-1]})
 
 
 @cache

@@ -12,6 +12,8 @@
 4. Of the `LEADING` first pipelines those that can lead or are not far behind on `UNITS` units
    again: calibrated on drawn benches (`ON_BENCH`), and under the conditions of what becomes of a
    sensor after its calibration (`SINCE`).
+5. Under the first condition on `UNITS` units: where two families of methods meet to decide one of
+   the survey's directions (`benchmark.directions.rules`), the `OF_FAMILY` first of each.
 
 What another condition does to a pipeline far behind under the first one helps nobody choose;
 `sunatlas benchmark` measures it for whoever asks.
@@ -24,9 +26,10 @@ from dataclasses import replace
 from functools import cache
 from itertools import groupby
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from benchmark.contract import FLIGHT, ON_BENCH, Cell
+from benchmark.directions.rules import is_of, rules
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import is_available
 from benchmark.plan.combinations import cells, scorable_plan, study_plans
@@ -34,6 +37,9 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.plan.shown import data_sets
 from registry.resolution import resolve_all
 from registry.taxonomy import Plan
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 Row = Mapping[str, Any]
 #: Keys of studies by detector, mask, extractor and model of a pipeline that they used.
@@ -50,6 +56,8 @@ UNITS_BEHIND = 5
 MOST = 20
 #: Pipelines of a board that are scored under every condition, and on drawn benches.
 LEADING = 5
+#: Pipelines of a family that are scored on so many units.
+OF_FAMILY = 2
 #: Conditions of sensors that are no longer as they were calibrated: chance differs by unit.
 SINCE = (FLIGHT, "hot", "cold", "aged")
 
@@ -100,8 +108,9 @@ def followers(
             for cell in kept
         ]
         units = dict(_units(ranked, scores))
+        often = {**units, **dict.fromkeys(_of_families(ranked, scores, preset), UNITS)}
         found += [
-            replace(cell, unit=unit) for cell, number in units.items() for unit in range(1, number)
+            replace(cell, unit=unit) for cell, number in often.items() for unit in range(1, number)
         ]
         found += [
             replace(cell, condition=ON_BENCH, unit=unit)
@@ -136,6 +145,19 @@ def _units(ranked: list[Cell], scores: Mapping[Cell, Row]) -> Iterator[tuple[Cel
             if times <= BEHIND and room[number]:
                 room[number] -= 1
                 yield cell, number
+
+
+def _of_families(ranked: list[Cell], scores: Mapping[Cell, Row], preset: Preset) -> Iterator[Cell]:
+    """Give the first of both families of every rule that this data set helps to decide."""
+    able = [cell for cell in ranked if is_available(scores[cell])]
+    for rule in rules().values():
+        if rule.kind == "duel" and rule.is_on(preset):
+            both = [
+                [cell for cell in able if is_of(family, cell.extractor, cell.model)][:OF_FAMILY]
+                for family in rule.families
+            ]
+            if all(both):
+                yield from (cell for cells_of_one in both for cell in cells_of_one)
 
 
 def published_scope(scores: Mapping[Cell, Row], parts: Parts) -> frozenset[Cell]:
