@@ -49,6 +49,7 @@ COMMANDS: dict[str, str] = {
     "curves": "Show how many calibration poses pipelines need.",
     "assess": "Compare the survey's scores of extractors with ours.",
     "claims": "Show claims of the survey, with verdicts.",
+    "directions": "Show the survey's future directions, with verdicts.",
     "calibrate": "Calibrate your own sensor from a turntable file.",
     "dataset": "List, describe, export or verify the standard data sets.",
     "deposit": "Build, verify, upload or publish the archive bundle.",

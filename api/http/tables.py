@@ -21,6 +21,7 @@ from api.schema import claims as of_claims
 from api.schema import comparison as of_comparison
 from api.schema import curves as of_curves
 from api.schema import datasets as of_datasets
+from api.schema import directions as of_directions
 from api.schema import figures as of_figures
 from api.schema import flows as of_flows
 from api.schema import recommendations as of_recommendations
@@ -37,6 +38,7 @@ from api.service import (
     claims,
     comparing,
     datasets,
+    directions,
     figures,
     leaderboard,
     recommendations,
@@ -170,6 +172,12 @@ TABLES = (
     ),
     Table("/claims", claims.claims, of_claims.Claims | Selected, "Claims of the survey, tested"),
     Table("/claims/{id}", claims.claim, of_claims.ClaimDetail, "A claim"),
+    Table(
+        "/directions",
+        directions.directions,
+        of_directions.Directions,
+        "Future directions of the survey, decided",
+    ),
     Table("/compare", comparing.compare, of_comparison.Comparison, "Comparison"),
     Table(
         "/compare/equal",

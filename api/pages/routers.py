@@ -9,6 +9,7 @@ from api.pages import (
     claim,
     compare,
     dataset,
+    directions,
     experiments,
     figures,
     glossary_page,
@@ -23,7 +24,7 @@ ROUTERS = (
     *(
         kind.router
         for kind in (
-            *(answer, study, algorithm, dataset, sensors, claim, compare, search),
+            *(answer, study, algorithm, dataset, sensors, claim, directions, compare, search),
             *(glossary_page, leaderboard, bibliography, calibrate, experiments),
         )
     ),

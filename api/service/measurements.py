@@ -83,6 +83,13 @@ class Measurements:
         return [row for row in self._every_unit if row["unit"] == 0]
 
     @cached_property
+    def directions(self) -> Sequence[Mapping[str, Any]]:
+        """What came of the survey's future directions."""
+        from benchmark.directions.outcomes import outcomes  # noqa: PLC0415 - loads the simulator
+
+        return outcomes(self._every_unit)
+
+    @cached_property
     def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:
         """Score of unit 0 by data set, condition, extractor and model.
 

@@ -42,7 +42,7 @@ def test_photons_give_the_direction_of_a_slope_to_two_over_contrast_and_root_of_
 ):
     """Drawn places of photons on a disc that is brighter to one side."""
     rng = np.random.default_rng(5)
-    contrast, count, found = 0.4, 20_000, []
+    contrast, count, found = 0.4, 4_000, []
     for _ in range(300):
         x, y = rng.uniform(-1.0, 1.0, (2, 4 * count))
         kept = (x**2 + y**2 < 1) & (rng.random(4 * count) < (1.0 + contrast * x) / (1.0 + contrast))
