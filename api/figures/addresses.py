@@ -53,16 +53,19 @@ class Addresses:
 
     def _wanted(self, given: Mapping[str, str]) -> dict[str, list[str]]:
         """Return attribute -> values, one of which a study must have."""
-        taxonomy = self.facts.taxonomy
         wanted = dict(self.where)
         for level, value in given.items():
-            base = attribute_of(level)
-            implied = [
-                v for v in taxonomy.values(base) if taxonomy.derived_values(level, v) == value
-            ]
+            ((base, implied),) = self.implied(level, value).items()
             allowed = wanted.get(base)
             wanted[base] = [v for v in implied if allowed is None or v in allowed]
         return wanted
+
+    def implied(self, level: str, value: str) -> dict[str, list[str]]:
+        """Return the attribute of a level, and its values with this value at the level."""
+        taxonomy, base = self.facts.taxonomy, attribute_of(level)
+        return {
+            base: [v for v in taxonomy.values(base) if taxonomy.derived_values(level, v) == value]
+        }
 
     def _found(
         self, wanted: Mapping[str, Collection[str]], years: tuple[int, int] | None

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from api.figures import wording
 from api.figures.addresses import Addresses
-from api.figures.coordinates_svg import Axis, Polyline, Tick, draw_coordinates
-from api.figures.figure import Entry, Figure
+from api.figures.figure import Figure
+from api.figures.specification import (
+    AXIS,
+    CATEGORIES,
+    HOVER,
+    UNKNOWN,
+    Plotly,
+    axis,
+    mark,
+    specification,
+)
 from api.schema.figures import SensorRow
 from api.schema.table import columns_of
 from registry.flows import LeftOut, Where, allowed_values, flows
@@ -23,8 +33,37 @@ CAPTION = (
     "as an RMS error. Dashed: the accuracy is of unspecified kind, drawn as printed."
 )
 NUMBERS = ("fov_deg", "accuracy_rms_deg")
-_COLOURS = {None: "c0", "CSS": "c4", "FSS": "c2", "VFSS": "c3", "UFSS": "c1"}
-"""Accuracy class -> colour."""
+_COLOURS: Mapping[str | None, str] = {
+    None: UNKNOWN,
+    **dict(zip(("CSS", "FSS", "VFSS", "UFSS"), (CATEGORIES[k] for k in (3, 1, 2, 0)), strict=True)),
+}
+"""Accuracy class -> colour, what is drawn first first."""
+_FOOT = 0.12  # of an axis of numbers, below the lowest: what is not known
+_SLOT = 0.7  # share of a name's slot over which its lines are spread
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """An axis: values and labels of its ticks, from the lowest place to the highest."""
+
+    name: str
+    title: str
+    ticks: Mapping[float | str, str]
+    named: bool = False
+    logarithmic: bool = False
+
+    def place(self, value: float | str | None, shift: float = 0.0) -> float:
+        """Return the place of a value, 0 to 1; of a name, shifted by a share of its slot."""
+        if self.named:
+            at = 0 if value is None else list(self.ticks).index(value) + 1
+            return (at + 0.5 + shift) / (len(self.ticks) + 1)
+        if value is None or not self.ticks:
+            return 0.0
+        ends = [list(self.ticks)[end] for end in (0, -1)]
+        scaled = [math.log10(float(v)) if self.logarithmic else float(v) for v in (*ends, value)]
+        low, high, shown = scaled
+        share = (shown - low) / (high - low) if high != low else 0.5
+        return _FOOT + (1 - _FOOT) * min(max(share, 0.0), 1.0)
 
 
 def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figure:
@@ -32,24 +71,6 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
     found = flows(("detector", "mask"), where, facts=facts)
     studies = [facts.studies[key] for key in found.studies]
     rows = [row for study in studies for row in _sensors(study, facts, where)]
-    axes = _axes(rows, facts)
-    lines = [
-        Polyline(
-            values=tuple(row[axis.name] for axis in axes),
-            colour=_COLOURS[row["accuracy"]],
-            title=_title(row, facts),
-            href=addresses.of([row["study"]], {}, at),
-            is_dashed=row["accuracy_kind"] == UNSPECIFIED,
-        )
-        for at, row in enumerate(rows)
-    ]
-    classes = [name for name in _COLOURS if any(row["accuracy"] == name for row in rows)]
-    entries = [
-        Entry(_COLOURS[name], wording.value_name(facts.taxonomy, "accuracy", name))
-        if name
-        else Entry(_COLOURS[None], "class of accuracy not known")
-        for name in sorted(classes, key=lambda name: (name is None, list(_COLOURS).index(name)))
-    ]
     left_out = tuple(
         LeftOut(name, tuple(study.key for study in studies if _number(study, name) is None))
         for name in NUMBERS
@@ -60,12 +81,78 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
         title=TITLE,
         caption=CAPTION,
         text=_text(studies, rows),
-        studies=len(studies),
-        left_out=left_out,
         columns=columns_of(SensorRow),
         rows=tuple(rows),
-        draw=lambda width: draw_coordinates(axes, lines, entries, width),
+        plotly=_plotly(rows, facts, addresses),
+        studies=len(studies),
+        left_out=left_out,
     )
+
+
+def _plotly(rows: Sequence[dict[str, Any]], facts: Facts, addresses: Addresses) -> Plotly:
+    """Return a line a sensor over upright axes, those of a class as one trace with gaps."""
+    axes = _axes(rows, facts)
+    traces: dict[tuple[str | None, bool], dict[str, list[Any]]] = {}
+    shifts = {one.name: _spread(rows, one.name) for one in axes if one.named}
+    for at, row in enumerate(rows):
+        of = (row["accuracy"], row["accuracy_kind"] == UNSPECIFIED)
+        trace = traces.setdefault(of, {"x": [], "y": [], "customdata": []})
+        href = addresses.of([row["study"]], {}, at)
+        for x, one in enumerate(axes):
+            value = row[one.name]
+            trace["x"].append(x)
+            trace["y"].append(one.place(value, shifts[one.name][at] if one.named else 0.0))
+            trace["customdata"].append(mark(_title(row, facts), href, value=value))
+        for gap in trace.values():
+            gap.append(None)
+    data = [
+        {
+            "type": "scatter",
+            "mode": "lines+markers",
+            "name": name or "class not known",
+            "legendgroup": str(name),
+            "showlegend": not dashed or (name, False) not in traces,
+            **traces[name, dashed],
+            "line": {"color": tone, "width": 1.4, "dash": "dash" if dashed else "solid"},
+            "marker": {"color": tone, "size": 4},
+            "opacity": 0.75 if name else 0.4,
+            "hovertemplate": HOVER,
+        }
+        for name, tone in _COLOURS.items()
+        for dashed in (False, True)
+        if (name, dashed) in traces
+    ]
+    unknown = [one for one in axes if any(row[one.name] is None for row in rows)]
+    ticks = [
+        _note(at, one.place(value), label, xanchor="right", xshift=-6)
+        for at, one in enumerate(axes)
+        for value, label in [*one.ticks.items(), *[(None, "not known")] * (one in unknown)]
+    ]
+    heads = [_note(at, 1.0, one.title, yshift=16) for at, one in enumerate(axes)]
+    return specification(
+        data,
+        height=560,
+        narrowest=760,
+        margin={"l": 8, "r": 8, "t": 60, "b": 8},
+        xaxis={**axis(range=[-0.6, len(axes) - 0.8]), "visible": False},
+        yaxis={**axis(range=[-0.03, 1.06]), "visible": False},
+        shapes=[
+            {"type": "line", **dict.fromkeys(("x0", "x1"), at), "y0": 0, "y1": 1, "layer": "below",
+             "line": {"color": AXIS, "width": 1}}
+            for at in range(len(axes))
+        ],
+        annotations=[*ticks, *heads],
+    )  # fmt: skip
+
+
+def _note(x: float, y: float, text: str, **more: Any) -> dict[str, Any]:
+    return {"x": x, "y": y, "xref": "x", "yref": "y", "text": text, "showarrow": False, **more}
+
+
+def _spread(rows: Sequence[dict[str, Any]], name: str) -> list[float]:
+    """Return for each row where in its value's slot its line runs, so that lines part."""
+    alike = [[at for at, other in enumerate(rows) if other[name] == row[name]] for row in rows]
+    return [_SLOT * ((of.index(at) + 0.5) / len(of) - 0.5) for at, of in enumerate(alike)]
 
 
 def _number(study: Study, name: str) -> float | None:
@@ -115,7 +202,7 @@ def _sensors(study: Study, facts: Facts, where: Where) -> list[dict[str, Any]]:
     ]
 
 
-def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[Axis, ...]:
+def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[_Axis, ...]:
     """Return the axes from left to right; on each, the better and the newer stand higher."""
     years = [row["year"] for row in rows if row["year"] is not None]
     first, last = min(years, default=2000), max(years, default=2001)
@@ -124,18 +211,14 @@ def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[Axis, ...]:
     known = [row["accuracy_rms_deg"] for row in rows if row["accuracy_rms_deg"] is not None]
     worst, best = _decades(known)
     return (
-        Axis("year", "Year", ticks=tuple(Tick(year, str(year)) for year in spaced)),
+        _Axis("year", "Year", {year: str(year) for year in spaced}),
         _name_of(rows, "detector", facts),
         _name_of(rows, "mask", facts),
-        Axis(
-            "fov_deg",
-            "Field of view",
-            ticks=tuple(Tick(n, f"{n}°") for n in (0, 90, 180, 270, 360)),
-        ),
-        Axis(
+        _Axis("fov_deg", "Field of view", {float(n): f"{n}°" for n in (0, 90, 180, 270, 360)}),
+        _Axis(
             "accuracy_rms_deg",
             "RMS error",
-            ticks=tuple(Tick(10.0**n, f"{10.0**n:g}°") for n in range(worst, best - 1, -1)),
+            {10.0**n: f"{10.0**n:g}°" for n in range(worst, best - 1, -1)},
             logarithmic=True,
         ),
     )
@@ -149,12 +232,14 @@ def _decades(values: Sequence[float]) -> tuple[int, int]:
     return max(greatest, least + 1), least
 
 
-def _name_of(rows: Sequence[dict[str, Any]], level: str, facts: Facts) -> Axis:
+def _name_of(rows: Sequence[dict[str, Any]], level: str, facts: Facts) -> _Axis:
     """Return an axis of names: those that occur, the first of the taxonomy on top."""
     met = {row[level] for row in rows}
     values = [value for value in facts.taxonomy.values(level) if value in met]
-    ticks = tuple(Tick(value, wording.display_name(level, value)) for value in reversed(values))
-    return Axis(level, wording.LEVELS[level], ticks=ticks, named=True)
+    ticks: dict[float | str, str] = {
+        value: wording.display_name(level, value) for value in reversed(values)
+    }
+    return _Axis(level, wording.LEVELS[level], ticks, named=True)
 
 
 def _title(row: dict[str, Any], facts: Facts) -> str:

@@ -1,43 +1,38 @@
-"""A figure: what it tells as a table and in words, and how it is drawn at a width."""
+"""A figure: what it tells as a table and in words, and how Plotly draws it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from api.figures.svg import Drawing
 from registry.flows import LeftOut
 
-WIDTHS: Mapping[str, float] = {"wide": 1100.0, "medium": 680.0, "narrow": 322.0}
-"""Widths in px that figures are laid out for; the page's style sheet shows the one that fits."""
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 Row = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Entry:
-    """A line of a legend: its colour, and what it stands for."""
-
-    colour: str
-    text: str
-
-
-@dataclass(frozen=True)
 class Figure:
-    """One figure of the survey, or the matrix, of some studies.
+    """One figure. It needs a name, title, caption, text, columns, rows and `plotly`.
+
+    A page shows it by `View(..., figures=(figure,))` of a `PageRouter.page(..., figures=True)` and
+    in its template `{{ parts.live_figure(figure, base, query) }}`: first as a picture
+    (`api.figures.picture`), then live (`api/static/live.js`).
 
     Attributes
     ----------
     name : in its address
     title, caption : as they are read
     text : what the figure shows, in sentences, for who does not see it
+    columns : of the table, fixed
+    rows : of the table; `studies` of a row, where it has them, are the keys behind its mark
+    plotly : `data` and `layout`, as `api.figures.specification.specification` makes them; its
+        numbers are those of the rows, and `customdata` of a mark is made by `mark`
     studies : number of those that meet the filters
     left_out : studies that a part of the figure cannot show, by level
-    columns : of the table, fixed
-    rows : of the table; `studies` of a row are the keys behind its mark
-    draw : width in px -> drawing
     options : what was asked besides filters
     counts : of the matrix: state -> number of pairs
     """
@@ -46,23 +41,28 @@ class Figure:
     title: str
     caption: str
     text: tuple[str, ...]
-    studies: int
-    left_out: tuple[LeftOut, ...]
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
-    draw: Callable[[float], Drawing]
+    plotly: Mapping[str, Any]
+    studies: int = 0
+    left_out: tuple[LeftOut, ...] = ()
     options: Mapping[str, str] = field(default_factory=dict)
     counts: Mapping[str, int] = field(default_factory=dict)
-
-    @cached_property
-    def drawings(self) -> Mapping[str, Drawing]:
-        """The figure at every width."""
-        return {name: self.draw(width) for name, width in WIDTHS.items()}
 
     @property
     def description(self) -> str:
         """The text, as one."""
         return " ".join(self.text)
+
+    def plotly_figure(self) -> go.Figure:
+        """Return it as a figure of Plotly's, to restyle or save."""
+        import plotly.graph_objects as go  # noqa: PLC0415 - a second to load, for who asks alone
+
+        return go.Figure(self.plotly).update_layout(title_text=self.title, margin_t=70)
+
+    def show(self, renderer: str | None = None) -> None:
+        """Show it in a notebook or a browser; `renderer` is one of `plotly.io.renderers`."""
+        self.plotly_figure().show(renderer)
 
     def to_dict(self) -> dict[str, Any]:
         """As in the HTTP answer."""

@@ -9,11 +9,13 @@ from types import MappingProxyType
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure, in_words
-from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
+from api.figures.sankey import Band, Stage, sankey
+from api.figures.specification import Plotly, colour, mark
 from api.schema.figures import FlowRow
 from api.schema.table import columns_of
 from registry.flows import Flows, Node, Where, flows
 from registry.studies import Facts
+from registry.taxonomy import Taxonomy
 
 
 @dataclass(frozen=True)
@@ -76,56 +78,68 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
     """
     chain = CHAINS[name]
     found = flows(chain.levels, where, facts=facts)
-    taxonomy = facts.taxonomy
     nodes = {node.id: node for node in found.nodes}
-    rows: list[dict[str, object]] = []
-    marks: dict[str, Mark] = {}
-    for node in found.nodes:
-        said = wording.value_label(taxonomy, node.level, node.value)
-        title = f"{wording.LEVELS[node.level]} {said}: {wording.studies(node.count)}"
-        href = addresses.of(node.studies, {node.level: node.value}, len(rows))
-        marks[node.id] = Mark(title, href)
-        rows.append(_row(node, None, node.studies))
-    bands: dict[tuple[str, str], Mark] = {}
-    for link in found.links:
-        source, target = nodes[link.source], nodes[link.target]
-        ends = [wording.display_name(end.level, end.value) for end in (source, target)]
-        title = f"{ends[0]} → {ends[1]}: {wording.studies(link.value)}"
-        given = {source.level: source.value, target.level: target.value}
-        href = addresses.of(link.studies, given, len(rows))
-        bands[link.source, link.target] = Mark(title, href)
-        rows.append(_row(source, target, link.studies))
-
-    linked = {node for ends in bands for node in ends}
-    columns = [
-        [n.id for n in found.nodes if n.level == level and n.id in linked] for level in chain.levels
+    rows = [
+        *(_row(node, None, node.studies) for node in found.nodes),
+        *(_row(nodes[one.source], nodes[one.target], one.studies) for one in found.links),
     ]
-    drawn = SankeyMarks(
-        columns=columns,
-        values={(link.source, link.target): link.value for link in found.links},
-        labels={
-            node.id: (wording.display_name(node.level, node.value), wording.amount(node.count))
-            for node in found.nodes
-        },
-        colours={
-            node.id: taxonomy.values(node.level).index(node.value) % 8 + 1 for node in found.nodes
-        },
-        headings=[wording.LEVELS[level] for level in chain.levels],
-        pinned=[at for at, level in enumerate(chain.levels) if level in _PINNED],
-        nodes=marks,
-        bands=bands,
-    )
     return Figure(
         name=name,
         title=chain.title,
         caption=chain.caption,
         text=_text(found, facts),
-        studies=len(found.studies),
-        left_out=found.left_out,
         columns=columns_of(FlowRow),
         rows=tuple(rows),
-        draw=lambda width: draw_sankey(drawn, width),
+        plotly=flow_plotly(found, facts.taxonomy, addresses),
+        studies=len(found.studies),
+        left_out=found.left_out,
     )
+
+
+def flow_plotly(found: Flows, taxonomy: Taxonomy, addresses: Addresses) -> Plotly:
+    """Return a flow as a Sankey diagram; its rows are the nodes, then the links."""
+    stages: list[Stage] = []
+    for at, node in enumerate(found.nodes):
+        said = wording.value_label(taxonomy, node.level, node.value)
+        title = f"{wording.LEVELS[node.level]} {said}: {wording.studies(node.count)}"
+        href = addresses.of(node.studies, {node.level: node.value}, at)
+        shown = wording.display_name(node.level, node.value)
+        stages.append(
+            Stage(
+                id=node.id,
+                column=found.levels.index(node.level),
+                label=f"{shown}  {wording.amount(node.count)}",
+                colour=colour(taxonomy.values(node.level).index(node.value)),
+                mark=mark(
+                    title,
+                    href,
+                    studies=node.studies,
+                    narrow=addresses.implied(node.level, node.value),
+                ),
+            )
+        )
+    nodes = {node.id: node for node in found.nodes}
+    bands: list[Band] = []
+    for at, link in enumerate(found.links, len(found.nodes)):
+        ends = [nodes[link.source], nodes[link.target]]
+        names = " → ".join(wording.display_name(end.level, end.value) for end in ends)
+        given = {end.level: end.value for end in ends}
+        narrow = {k: v for end in ends for k, v in addresses.implied(end.level, end.value).items()}
+        bands.append(
+            Band(
+                link.source,
+                link.target,
+                link.value,
+                mark(
+                    f"{names}: {wording.studies(link.value)}",
+                    addresses.of(link.studies, given, at),
+                    studies=link.studies,
+                    narrow=narrow,
+                ),
+            )
+        )
+    pinned = [at for at, level in enumerate(found.levels) if level in _PINNED]
+    return sankey(stages, bands, [wording.LEVELS[level] for level in found.levels], pinned)
 
 
 def _row(node: Node, target: Node | None, studies: tuple[str, ...]) -> dict[str, object]:

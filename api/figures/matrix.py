@@ -7,13 +7,23 @@ could be.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from api.addresses import architecture_page, dataset_page
 from api.figures import wording
 from api.figures.addresses import Addresses
-from api.figures.figure import Entry, Figure, in_words
-from api.figures.matrix_svg import Cell, Line, draw_matrix
+from api.figures.figure import Figure, in_words
+from api.figures.specification import (
+    HOVER,
+    LINE,
+    SURFACE,
+    Plotly,
+    axis,
+    mark,
+    scale,
+    specification,
+)
 from api.schema.figures import PairRow
 from api.schema.table import columns_of
 from benchmark.leaderboard.summaries import digits
@@ -25,6 +35,9 @@ from registry.taxonomy import Taxonomy, attribute_of, unknown_name
 
 NAME = "matrix"
 TITLE = "Evidence map"
+_STATES = ("measured", "unknown", "unstudied", "impossible")
+"""States of a pair without a study, in the order of their colours."""
+_SIGNS = {"measured": "•", "unknown": "?", "unstudied": "", "impossible": "×"}
 
 
 def matrix_figure(
@@ -69,7 +82,7 @@ def matrix_figure(
 
     values = {level: _values(taxonomy, level, where) for level in (rows, columns)}
     table: list[dict[str, Any]] = []
-    cells: dict[tuple[str, str], Cell] = {}
+    marks: list[dict[str, Any]] = []
     for row in values[rows]:
         for column in values[columns]:
             keys = behind.get((f"{rows}:{row}", f"{columns}:{column}"), ())
@@ -81,9 +94,7 @@ def matrix_figure(
             href = (
                 addresses.of(keys, given, len(table)) if keys else cell_evidence["leads_to"] or None
             )
-            cells[row, column] = Cell(
-                len(keys), _title(pair, len(keys), known), href, known.state, known.pipelines > 0
-            )
+            marks.append(mark(_title(pair, len(keys), known), href))
             table.append(
                 {
                     "row_level": rows,
@@ -99,23 +110,20 @@ def matrix_figure(
                 }
             )
     lines = {
-        level: [_line(taxonomy, level, value, nodes) for value in values[level]]
-        for level in (rows, columns)
+        level: [_line(level, value, nodes) for value in values[level]] for level in (rows, columns)
     }
     heads = (wording.LEVELS[rows], wording.LEVELS[columns])
     return Figure(
         name=NAME,
         title=f"{TITLE}: {heads[0].lower()} by {heads[1].lower()}",
-        caption="How many studies have both values, and which pairs are measured here; of the "
-        "others, which are impossible, unknown or unstudied.",
+        caption="How many studies have both values, and which pairs are measured here (•); of the "
+        "others, which are impossible (×), unknown (?) or unstudied (empty).",
         text=_text(table, lines[rows], lines[columns], heads, left_out),
         studies=len(found.studies),
         left_out=left_out,
         columns=columns_of(PairRow),
         rows=tuple(table),
-        draw=lambda width: draw_matrix(
-            lines[rows], lines[columns], cells, heads, _legend(table), width=width
-        ),
+        plotly=_plotly(table, marks, (lines[rows], lines[columns])),
         options={"rows": rows, "columns": columns},
         counts=count(row["state"] for row in table),
     )
@@ -166,19 +174,63 @@ def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
     return f"{said}: {', '.join(parts)}"
 
 
-def _legend(table: Sequence[Mapping[str, Any]]) -> tuple[Entry, ...]:
-    """Return the states, each with its sign in the drawing and the number of pairs."""
-    counts = count(row["state"] for row in table)
-    without = sum(row["state"] == "measured" and not row["count"] for row in table)
-    words = {
-        "measured": f"• measured here ({without} of them without a study)",
-        "studied": "studied, not measured",
-        "impossible": "× impossible",
-        "unknown": "? unknown: perhaps in a study whose cell is empty",
-        "unstudied": "unstudied",
+def _plotly(
+    table: Sequence[Mapping[str, Any]],
+    marks: Sequence[Mapping[str, Any]],
+    lines: tuple[Sequence[_Line], Sequence[_Line]],
+) -> Plotly:
+    """Return two heatmaps of the same cells: numbers of studies, and states where there is none."""
+    rows, columns = lines
+    across = len(columns)
+
+    def by_row(cells: Sequence[Any]) -> list[list[Any]]:
+        return [list(cells[at : at + across]) for at in range(0, len(cells), across)]
+
+    shared = {
+        "type": "heatmap",
+        "x": [column.label for column in columns],
+        "y": [row.label for row in rows],
+        "customdata": by_row(marks),
+        "hovertemplate": HOVER,
+        "texttemplate": "%{text}",
+        "hoverongaps": False,
+        "showscale": False,
+        "xgap": 2,
+        "ygap": 2,
     }
-    return tuple(
-        Entry(f"state {state}", f"{words[state]}: {count}") for state, count in counts.items()
+    measured = ["•" if row["pipelines"] else "" for row in table]
+    studied = {
+        "z": by_row([row["count"] or None for row in table]),
+        "text": by_row(
+            [
+                f"{row['count']}{dot}" if row["count"] else ""
+                for row, dot in zip(table, measured, strict=True)
+            ]
+        ),
+        "colorscale": scale(),
+        "zmin": 1,
+        "zmax": max([2, *(row["count"] for row in table)]),
+    }
+    states = {
+        "z": by_row([None if row["count"] else _STATES.index(row["state"]) for row in table]),
+        "text": by_row([_SIGNS.get(row["state"], "") for row in table]),
+        "colorscale": scale((SURFACE, SURFACE, SURFACE, LINE)),
+        "zmin": 0,
+        "zmax": len(_STATES) - 1,
+    }
+    names = [[f"{line.label} ({line.count})" for line in of] for of in lines]
+    return specification(
+        [{**shared, **states}, {**shared, **studied}],
+        height=110 + 30 * len(rows),
+        narrowest=160 + 42 * across,
+        xaxis=axis(
+            side="top",
+            tickangle=-40,
+            tickvals=shared["x"],
+            ticktext=names[1],
+            showgrid=False,
+        ),
+        yaxis=axis(autorange="reversed", tickvals=shared["y"], ticktext=names[0], showgrid=False),
     )
 
 
@@ -192,18 +244,23 @@ def _values(taxonomy: Taxonomy, level: str, where: Where) -> Sequence[str]:
     return [value for value in taxonomy.values(level) if value in left]
 
 
-def _line(taxonomy: Taxonomy, level: str, value: str, nodes: Mapping[str, Node]) -> Line:
+@dataclass(frozen=True)
+class _Line:
+    """A row or a column: its label and number of studies."""
+
+    label: str
+    count: int
+
+
+def _line(level: str, value: str, nodes: Mapping[str, Node]) -> _Line:
     node = nodes.get(f"{level}:{value}")
-    count = 0 if node is None else len(node.studies)
-    said = wording.value_label(taxonomy, level, value)
-    title = f"{wording.LEVELS[level]} {said}: {wording.studies(count) if count else 'no study'}"
-    return Line(value, wording.display_name(level, value), count, title)
+    return _Line(wording.display_name(level, value), 0 if node is None else len(node.studies))
 
 
 def _text(
     table: Sequence[Mapping[str, Any]],
-    rows: Sequence[Line],
-    columns: Sequence[Line],
+    rows: Sequence[_Line],
+    columns: Sequence[_Line],
     heads: tuple[str, str],
     left_out: Sequence[LeftOut],
 ) -> tuple[str, ...]:

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from api.figures import svg, wording
+from api.figures import wording
 from api.figures.addresses import Addresses
-from api.figures.bars import Bar, Part, horizontal_bars, upright_bars
-from api.figures.figure import Entry, Figure
-from api.figures.legend import legend
-from api.figures.lettering import line_height
-from api.figures.svg import BODY, SMALL, Drawing
+from api.figures.figure import Figure
+from api.figures.specification import (
+    HOVER,
+    UNKNOWN,
+    Plotly,
+    axis,
+    colour,
+    legend,
+    mark,
+    specification,
+)
 from api.schema.figures import PublicationRow
 from api.schema.table import columns_of
 from registry.flows import Where, flows
@@ -23,16 +30,10 @@ NAME = "publications"
 TITLE = "Publications per year and venue"
 CAPTION = "When and where the mapped studies were published."
 
-KINDS = {
-    "journal": "c1",
-    "conference": "c2",
-    "preprint": "c3",
-    "thesis": "c4",
-    "report": "c5",
-    "unknown": "c0",
-}
-"""Kind of publication -> colour."""
+KINDS = ("journal", "conference", "preprint", "thesis", "report", "unknown")
 _KIND_NAMES = {"unknown": "kind not known"}
+_FIRST_PERIOD = 2  # the place of its colour
+_YEARS, _BAR = 260, 24  # px: height of the years' chart, and of a venue
 PERIOD = 5  # years
 
 
@@ -70,107 +71,70 @@ def publications_figure(facts: Facts, addresses: Addresses, where: Where) -> Fig
     keys = flows(("detector", "mask"), where, facts=facts).studies
     studies = [facts.studies[key] for key in keys]
     dated = [study for study in studies if study.year is not None]
-    rows: list[dict[str, Any]] = []
-    years = _years(dated, addresses, rows)
+    rows = _years(dated)
     periods = _periods(dated)
-    venues, others = _venue_bars(dated, periods, addresses, rows)
-    kinds = [kind for kind in KINDS if any(_kinds().get(s.key, "unknown") == kind for s in dated)]
-    by_kind = [Entry(KINDS[kind], _KIND_NAMES.get(kind, kind)) for kind in kinds]
-    by_period = [
-        Entry(colour, f"{a}–{b}" if a < b else f"{a}") for (a, b), colour in periods.items()
-    ]
-
-    def draw(width: float) -> Drawing:
-        return _draw(years, by_kind, venues, by_period, others, width=width)
-
+    venues = _venues_of(dated)
+    several = [name for name, of in venues.items() if name and len(of) > 1]
+    singles = sorted(name for name, of in venues.items() if name and len(of) == 1)
+    for name in (*several, *singles, *[""] * ("" in venues)):
+        rows += _stack(name, venues[name], periods)
     return Figure(
         name=NAME,
         title=TITLE,
         caption=CAPTION,
-        text=_text(dated, years, rows),
-        studies=len(studies),
-        left_out=(),
+        text=_text(dated, rows),
         columns=columns_of(PublicationRow),
         rows=tuple(rows),
-        draw=draw,
+        plotly=_plotly(rows, several, periods, addresses),
+        studies=len(studies),
     )
 
 
-def _years(studies: Sequence[Study], addresses: Addresses, rows: list[dict[str, Any]]) -> list[Bar]:
-    """Return a bar for every year from the first to the last, those without a study too."""
-    found = [study.year for study in studies if study.year is not None]
-    bars = []
-    for year in range(min(found, default=0), max(found, default=-1) + 1):
-        parts = []
-        for kind, colour in KINDS.items():
+def _years(studies: Sequence[Study]) -> list[dict[str, Any]]:
+    """Return a row for every year and kind of publication."""
+    rows = []
+    for year in sorted({study.year for study in studies if study.year is not None}):
+        for kind in KINDS:
             keys = [
                 study.key
                 for study in studies
                 if study.year == year and _kinds().get(study.key, "unknown") == kind
             ]
             if keys:
-                title = f"{year}, {_KIND_NAMES.get(kind, kind)}: {wording.studies(len(keys))}"
-                href = addresses.of(keys, {}, len(rows), (year, year))
-                parts.append(Part(len(keys), colour, title, href))
                 rows.append(_row("year", str(year), kind, keys))
-        bars.append(Bar(str(year), f"’{year % 100:02}", tuple(parts)))
-    return bars
+    return rows
 
 
-def _periods(studies: Sequence[Study]) -> dict[tuple[int, int], str]:
-    """Return periods of years with their colours, the first from the first year on."""
+def _periods(studies: Sequence[Study]) -> list[tuple[int, int]]:
+    """Return periods of years, the first from the first year on."""
     years = [study.year for study in studies if study.year is not None]
     first, last = min(years, default=0), max(years, default=-1)
     starts = range(first, last + 1, PERIOD)
-    return {
-        (start, min(start + PERIOD - 1, last)): f"c{3 + at % 6}" for at, start in enumerate(starts)
-    }
+    return [(start, min(start + PERIOD - 1, last)) for start in starts]
 
 
-def _venue_bars(
-    studies: Sequence[Study],
-    periods: Mapping[tuple[int, int], str],
-    addresses: Addresses,
-    rows: list[dict[str, Any]],
-) -> tuple[list[Bar], list[Part]]:
-    """Return a bar for each venue with several studies, and what is said of all other studies."""
+def _venues_of(studies: Sequence[Study]) -> dict[str, list[Study]]:
+    """Return venues with their studies, the fullest first; "" is not known."""
     of: dict[str, list[Study]] = {}
     for study in studies:
         of.setdefault(_venues().get(study.key, ""), []).append(study)
-    unknown = of.pop("", [])
-    several = sorted((v for v in of if len(of[v]) > 1), key=lambda v: (-len(of[v]), v))
-    single = sorted(v for v in of if len(of[v]) == 1)
-    bars = [_stack(venue, of[venue], periods, addresses=addresses, rows=rows) for venue in several]
-    others = []
-    if single:
-        label = wording.plural(len(single), "venue has one study", "venues have one study each")
-        others.append(Part(len(single), "", label, f"{addresses.page}#row-{len(rows)}"))
-        for venue in single:
-            _stack(venue, of[venue], periods, addresses=addresses, rows=rows)
-    if unknown:
-        label = f"The venue of {wording.plural(len(unknown), 'study', 'studies')} is not known"
-        others.append(Part(len(unknown), "", label, f"{addresses.page}#row-{len(rows)}"))
-        _stack("", unknown, periods, addresses=addresses, rows=rows)
-    return bars, others
+    return {name: of[name] for name in sorted(of, key=lambda name: (-len(of[name]), name))}
 
 
 def _stack(
-    venue: str,
-    studies: Sequence[Study],
-    periods: Mapping[tuple[int, int], str],
-    *,
-    addresses: Addresses,
-    rows: list[dict[str, Any]],
-) -> Bar:
-    """Return the bar of a venue, and append a row a period."""
-    parts = []
-    for (first, last), colour in periods.items():
+    venue: str, studies: Sequence[Study], periods: Sequence[tuple[int, int]]
+) -> list[dict[str, Any]]:
+    """Return a row for each period of a venue."""
+    rows = []
+    for first, last in periods:
         keys = [s.key for s in studies if s.year is not None and first <= s.year <= last]
         if keys:
-            title = f"{venue}, {first}–{last}: {wording.studies(len(keys))}"
-            parts.append(Part(len(keys), colour, title, addresses.of(keys, {}, len(rows))))
-            rows.append(_row("venue", venue, f"{first}–{last}", keys))
-    return Bar(venue, venue, tuple(parts))
+            rows.append(_row("venue", venue, _said(first, last), keys))
+    return rows
+
+
+def _said(first: int, last: int) -> str:
+    return f"{first}–{last}"
 
 
 def _row(part: str, value: str, stack: str, keys: Sequence[str]) -> dict[str, Any]:
@@ -183,50 +147,78 @@ def _row(part: str, value: str, stack: str, keys: Sequence[str]) -> dict[str, An
     }
 
 
-def _draw(
-    years: Sequence[Bar],
-    by_kind: Sequence[Entry],
-    venues: Sequence[Bar],
-    by_period: Sequence[Entry],
-    others: Sequence[Part],
-    *,
-    width: float,
-) -> Drawing:
-    """Return both charts, one above the other, each with its heading and its legend."""
-    if not years:
-        return Drawing(width, 40, svg.text(0, 20, "No study meets the filters.", "quiet"))
-    size = BODY if width > 900 else SMALL
-    shapes = [svg.text(0, 12, "Studies per year", "heading", size=size, bold=True)]
-    drawn, y = legend(by_kind, 26, width)
-    shapes.append(drawn)
-    drawn, y = upright_bars(years, y + 8, width) or horizontal_bars(years, y + 8, width)
-    shapes.append(drawn)
-    y += 34
-    shapes.append(svg.text(0, y, "Studies per venue", "heading", size=size, bold=True))
-    drawn, y = legend(by_period, y + 14, width)
-    shapes.append(drawn)
-    drawn, y = horizontal_bars(venues, y + 8, width)
-    shapes.append(drawn)
-    for said in others:
-        lines = svg.fit(said.title, width, size)
-        half = len(lines) * line_height(size) / 2
-        written = svg.text(0, y + half + 4, lines, "quiet", size=size)
-        shapes.append(svg.mark(said.title, said.href, written))
-        y += 2 * half + 2
-    return Drawing(width, y + 8, "".join(shapes))
+def _plotly(
+    rows: Sequence[Mapping[str, Any]],
+    venues: Sequence[str],
+    periods: Sequence[tuple[int, int]],
+    addresses: Addresses,
+) -> Plotly:
+    """Return upright bars of years by kind above lying ones of venues by period."""
+    stacks = {("year", kind): colour(at) for at, kind in enumerate(KINDS[:-1])}
+    stacks["year", "unknown"] = UNKNOWN
+    for at, period in enumerate(periods):
+        stacks["venue", _said(*period)] = colour(_FIRST_PERIOD + at)
+    data = []
+    for (part, stack), tone in stacks.items():
+        mine = [
+            (at, row)
+            for at, row in enumerate(rows)
+            if (row["part"], row["stack"]) == (part, stack)
+            and (part == "year" or row["value"] in venues)
+        ]
+        name = _KIND_NAMES.get(stack, stack)
+        marks = []
+        for at, row in mine:
+            years = (int(row["value"]),) * 2 if part == "year" else None
+            href = addresses.of(row["studies"], {}, at, years)
+            said = f"{row['value']}, {name}: {wording.studies(row['count'])}"
+            marks.append(mark(said, href))
+        counts = [row["count"] for _, row in mine]
+        values = [int(row["value"]) if part == "year" else row["value"] for _, row in mine]
+        shared = {
+            "type": "bar",
+            "name": name,
+            "marker": {"color": tone},
+            "customdata": marks,
+            "hovertemplate": HOVER,
+        }
+        if not mine:
+            continue
+        if part == "year":
+            data.append({**shared, "x": values, "y": counts})
+        else:
+            axes = {"xaxis": "x2", "yaxis": "y2", "legend": "legend2"}
+            data.append({**shared, **axes, "orientation": "h", "y": values, "x": counts})
+    lower = _BAR * len(venues)
+    height = _YEARS + lower + 110
+    return specification(
+        data,
+        height=height,
+        narrowest=640,
+        barmode="stack",
+        xaxis=axis(anchor="y", showgrid=False),
+        yaxis=axis("Studies per year", domain=[1 - _YEARS / height, 1]),
+        xaxis2=axis("Studies per venue", anchor="y2"),
+        yaxis2=axis(
+            anchor="x2",
+            domain=[0, lower / height],
+            categoryarray=list(venues),
+            categoryorder="array",
+            autorange="reversed",
+            showgrid=False,
+        ),
+        legend2=legend(lower / height),
+    )
 
 
-def _text(
-    studies: Sequence[Study], years: Sequence[Bar], rows: Sequence[Mapping[str, Any]]
-) -> tuple[str, ...]:
+def _text(studies: Sequence[Study], rows: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
     if not studies:
         return ("No study meets the filters.",)
-    most = sorted(years, key=lambda bar: -bar.count)[:2]
+    years = Counter(sorted(study.year for study in studies if study.year is not None))
+    most = [f"{year} ({count})" for year, count in years.most_common(2)]
     said = [
-        f"{wording.studies(len(studies))}, {years[0].label} to {years[-1].label}.",
-        "Most in "
-        + wording.join_words([f"{bar.label} ({bar.count})" for bar in most if bar.count])
-        + ".",
+        f"{wording.studies(len(studies))}, {min(years)} to {max(years)}.",
+        f"Most in {wording.join_words(most)}.",
     ]
     venues: dict[str, int] = {}
     for row in rows:
@@ -237,6 +229,6 @@ def _text(
         known = sum(venues.values())
         said.append(
             f"The venue of {known} is known, one of {len(venues)}; most are in {first} "
-            f"({venues[first]})."
+            f"({venues[first]}). Those with one study are in the table alone."
         )
     return tuple(said)

@@ -13,7 +13,7 @@ from api.schema.words import DatasetName
 from api.service import datasets as service
 from api.web.answers import AnswerRoute, Columns, Picture, StrictRoute, link
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.static_files import PAGE, file_of
+from api.web.static_files import PAGE, file_of, plotly_file, plotly_name
 
 router = APIRouter(prefix="/v1/datasets", route_class=AnswerRoute, dependencies=[NO_PARAMETERS])
 static = APIRouter(route_class=StrictRoute, include_in_schema=False)
@@ -80,8 +80,10 @@ def _file(known: Known, name: str, kind: str) -> Response:
 
 
 @static.get("/page/{name:path}", dependencies=[NO_PARAMETERS])
-def page_file(name: str) -> Response:
-    """Give a file of the page."""
+def page_file(name: str, request: Request) -> Response:
+    """Give a file of the page, or plotly.js."""
+    if name == plotly_name():
+        return plotly_file(request.headers.get("accept-encoding", ""))
     return file_of(PAGE, name, "page")
 
 

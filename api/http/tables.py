@@ -48,7 +48,7 @@ from api.service import (
     taxonomy,
 )
 from api.service.documents import Document
-from api.web.answers import Answer, AnswerRoute, CitedAnswer
+from api.web.answers import Answer, AnswerRoute, CitedAnswer, FigureAnswer
 from api.web.dependencies import Known
 
 #: Parts of paths: what they are, and an example.
@@ -96,8 +96,15 @@ TABLES = (
         figures.matrix,
         of_figures.Figure,
         "Evidence map: studies by two attributes",
+        FigureAnswer,
     ),
-    Table("/figures/{figure}", figures.figure, of_figures.Figure, "A figure of the survey"),
+    Table(
+        "/figures/{figure}",
+        figures.figure,
+        of_figures.Figure,
+        "A figure of the survey",
+        FigureAnswer,
+    ),
     Table(
         "/recommendations",
         recommendations.recommendations,

@@ -1,34 +1,28 @@
-"""/figures: the survey's figures, drawn on the server, each with its table."""
+"""/figures: the survey's figures, each with its table."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from importlib.resources import files
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import Path, Query, Request
 
 from api.figures import wording
 from api.figures.catalogue import MATRIX, FigureName, evidence_map
 from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure, Row
-from api.figures.interactive import specification
 from api.figures.statements import number_of_studies, statements
 from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, kind_said, own_error, wide
-from api.pages.serving import PageRouter, View
+from api.pages.serving import DRAWN, PageRouter, View
 from api.schema.figures import FigureQuery, MatrixQuery
 from api.schema.studies import StudyFilters
 from api.service import figures as service
 from api.service.knowledge import Knowledge
-from api.web.answers import AnswerRoute
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.negotiation import JSON
 from registry.taxonomy import ATTRIBUTES, LEVELS
 from survey_data.reported import QUANTITIES
 
-SVG = "image/svg+xml"
-PLOTLY = ".plotly.json"
 NOT_KNOWN = "not known"
 
 
@@ -36,22 +30,7 @@ Cell = tuple[str, str, str]
 """Heading, text, and what stands below it."""
 
 
-class Drawing(Response):
-    """An SVG."""
-
-    media_type = f"{SVG}; charset=utf-8"
-    media_types = (SVG,)
-
-
-class Specification(Response):
-    """A figure for Plotly."""
-
-    media_type = JSON
-
-
 router = PageRouter()
-drawings = APIRouter(route_class=AnswerRoute, include_in_schema=False)
-specifications = APIRouter(route_class=AnswerRoute, include_in_schema=False)
 
 
 @router.page("/figures")
@@ -67,7 +46,7 @@ async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -
     )
 
 
-@router.page(f"/figures/{MATRIX}")
+@router.page(f"/figures/{MATRIX}", figures=True)
 async def matrix(known: Known, query: Annotated[MatrixQuery, Query()], request: Request) -> View:
     """Studies by two attributes, gaps as visible as what is there."""
     found = _matrix(known, query, request)
@@ -82,7 +61,7 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()], request: 
     return _view(known, found, query, request, chosen=chosen, gaps=gaps)
 
 
-@router.page("/figures/{figure}")
+@router.page("/figures/{figure}", figures=True)
 async def figure(
     known: Known,
     figure: Annotated[FigureName, Path()],
@@ -94,44 +73,6 @@ async def figure(
     return _view(known, found, query, request, chosen={}, gaps={})
 
 
-@drawings.get(f"/figures/{MATRIX}.svg", response_class=Drawing)
-async def matrix_drawing(
-    known: Known, query: Annotated[MatrixQuery, Query()], request: Request
-) -> Drawing:
-    """Give the matrix as a drawing."""
-    return _document(_matrix(known, query, request))
-
-
-@drawings.get("/figures/{figure}.svg", response_class=Drawing)
-async def figure_drawing(
-    known: Known,
-    figure: Annotated[FigureName, Path()],
-    query: Annotated[FigureQuery, Query()],
-    request: Request,
-) -> Drawing:
-    """Give a figure as a drawing."""
-    return _document(
-        drawn(figure, known.of(query.edition).facts, query.by_attribute(), _page(request))
-    )
-
-
-@specifications.get(f"/figures/{MATRIX}{PLOTLY}", response_class=Specification)
-async def matrix_specification(
-    known: Known, query: Annotated[MatrixQuery, Query()], request: Request
-) -> Specification:
-    """Give the matrix for Plotly."""
-    return Specification(specification(_matrix(known, query, request)))
-
-
-@specifications.get(f"/figures/{{figure}}{PLOTLY}", response_class=Specification)
-async def figure_specification(
-    known: Known, figure: Annotated[FigureName, Path()], query: Annotated[FigureQuery, Query()]
-) -> Specification:
-    """Give a figure for Plotly."""
-    studies = known.of(query.edition).facts
-    return Specification(specification(drawn(figure, studies, query.by_attribute())))
-
-
 def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
     asked = (query.by_attribute(), query.rows, query.columns, _page(request))
     return evidence_map(known.of(query.edition).facts, *asked, evidence=known.evidence)
@@ -139,7 +80,9 @@ def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
 
 def _page(request: Request) -> str:
     """Return the address of the page of what is asked for."""
-    path = request.scope["path"].removesuffix(".svg").removesuffix(PLOTLY)
+    path = request.scope["path"]
+    for suffix in DRAWN:
+        path = path.removesuffix(suffix)
     query = request.scope["query_string"].decode("latin-1")
     return f"{path}?{query}" if query else path
 
@@ -163,6 +106,7 @@ def _view(
     return View(
         "figure.html",
         service.document_of(found),
+        figures=(found,),
         figure=found,
         abbreviations=_abbreviations(known, found),
         rows=rows,
@@ -213,13 +157,6 @@ def _abbreviations(known: Knowledge, found: Figure) -> list[tuple[str, str]]:
         for level, value in met
     }
     return sorted((short, name) for short, name in named.items() if short != name)
-
-
-def _document(found: Figure) -> Drawing:
-    style = (files("api") / "static" / "styles" / "figures.css").read_text(encoding="utf-8")
-    # What places a figure in a page says nothing to a drawing of its own.
-    drawing = found.drawings["wide"]
-    return Drawing(drawing.document(found.title, found.description, style))
 
 
 def _flow_cells(row: Row) -> list[Cell]:
@@ -300,4 +237,3 @@ _CELLS: Mapping[str, Callable[[Row], list[Cell]]] = {
     "coordinates": _sensor_cells,
     MATRIX: _matrix_cells,
 }
-ROUTERS: tuple[Any, ...] = (drawings, specifications, router)

@@ -13,6 +13,7 @@ from api import addresses
 from api.pages import numbers, terms
 from api.pages.methods import mark_up
 from api.pages.plots.sensors import sensor
+from api.web.static_files import plotly_name
 
 
 @cache
@@ -29,6 +30,7 @@ def environment() -> Environment:
         navigation=addresses.NAVIGATION,
         sensor=sensor,
         glossary=terms.glossary(),
+        plotly_name=plotly_name,
         **vars_of(addresses.GIVEN),
     )
     made.filters.update(

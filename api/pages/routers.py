@@ -25,10 +25,9 @@ ROUTERS = (
         kind.router
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, directions, compare, search),
-            *(glossary_page, leaderboard, bibliography, calibrate, experiments),
+            *(glossary_page, leaderboard, bibliography, calibrate, experiments, figures),
         )
     ),
-    *figures.ROUTERS,
     experiments.pictures,
 )
 """Routers of every kind of page."""

@@ -8,18 +8,31 @@ from typing import Any, ClassVar
 from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse
+from pydantic_core import to_json
 
+from api.figures.figure import Figure
+from api.figures.picture import picture
 from api.metadata.signposting import LandingPage, headers
 from api.pages.rendering import render
 from api.service.documents import Document
-from api.service.problems import Problem
+from api.service.problems import Problem, Violation
 from api.service.refusals import refusal
-from api.web.answers import Answer, Handler, StrictRoute, as_asked, link
-from api.web.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
+from api.web.answers import (
+    Answer,
+    Drawing,
+    Handler,
+    Specification,
+    StrictRoute,
+    as_asked,
+    link,
+)
+from api.web.negotiation import BIBTEX, CSV, JSON, PLOTLY, SVG, for_spreadsheets, media_type
 
 HTML = "text/html"
 OFFERED = (HTML, JSON, CSV)
 TWINS: Mapping[str, str] = {".json": JSON, ".csv": CSV}
+DRAWN: Mapping[str, str] = {".svg": SVG, ".plotly.json": PLOTLY}
+"""Twins of figures: of the first of a page, or with its name before the suffix of any."""
 FILES: Mapping[str, str] = {".bib": BIBTEX}
 """Twins that only some pages have."""
 
@@ -35,6 +48,7 @@ class View(Response):
     found : the document, `document` in the template; JSON and CSV are made of it
     landing : links for machines; None for a page without metadata of its own
     entity : description of the page's subject in schema.org's terms, with `landing`
+    figures : those of the page, which have addresses where the page is registered with `figures`
     context : further variables of the template
     """
 
@@ -49,12 +63,14 @@ class View(Response):
         *,
         landing: LandingPage | None = None,
         entity: Mapping[str, Any] | None = None,
+        figures: Sequence[Figure] = (),
         **context: Any,
     ) -> None:
         super().__init__()
         self.template = template
         self.found = found
         self.landing = landing
+        self.figures = figures
         self.context = {"entity": entity, **context}
 
     def representation(self, wanted: str, path: str = "/", query: str = "") -> Response:
@@ -67,6 +83,22 @@ class View(Response):
         links = self.landing.links() if self.landing else ()
         page = HTMLResponse(render(self.template, context), self.status_code)
         return link(page, *headers(links))
+
+    def figure(self, name: str | None, wanted: str) -> Response:
+        """Return a figure of the page, the first without a name, for Plotly or as a picture.
+
+        Raises
+        ------
+        Problem
+            404 where the page has no figure of this name.
+        """
+        found = next((one for one in self.figures if name in (None, one.name)), None)
+        if found is None:
+            known = ", ".join(one.name for one in self.figures) or "none"
+            raise Problem(404, "unknown-figure", errors=[Violation("figure", name, known)])
+        if wanted == PLOTLY:
+            return Specification(to_json(found.plotly))
+        return Drawing(picture(found.plotly, found.title, found.description))
 
 
 def refusal_page(request: Request, problem: Problem) -> Response:
@@ -84,7 +116,11 @@ class PageRoute(StrictRoute):
         """Return what handles a request."""
         compute = super().get_route_handler()
         twin = next(
-            (kind for suffix, kind in {**TWINS, **FILES}.items() if self.path.endswith(suffix)),
+            (
+                kind
+                for suffix, kind in {**DRAWN, **TWINS, **FILES}.items()
+                if self.path.endswith(suffix)
+            ),
             None,
         )
 
@@ -95,6 +131,8 @@ class PageRoute(StrictRoute):
             request.scope["query_string"] = _without_safe(query) if wanted == CSV else query
             try:
                 made: View = await compute(request)  # type: ignore[assignment]
+                if wanted in DRAWN.values():
+                    return made.figure(request.path_params.get("drawn"), wanted)
                 found = made.representation(wanted, path, query.decode("latin-1"))
                 request.scope["query_string"] = query
                 return as_asked(found, wanted, request)
@@ -130,7 +168,12 @@ class PageRouter(APIRouter):
         super().__init__(route_class=PageRoute, include_in_schema=False)
 
     def page(
-        self, path: str, twin: str | None = None, files: Sequence[str] = ()
+        self,
+        path: str,
+        twin: str | None = None,
+        files: Sequence[str] = (),
+        *,
+        figures: bool = False,
     ) -> Callable[[Endpoint], Endpoint]:
         """Offer a page at `path`, its twins at the same path with `.json` and `.csv`.
 
@@ -139,11 +182,14 @@ class PageRouter(APIRouter):
         path : as FastAPI takes it, such as "/studies/{key}"
         twin : the twins' path without suffix, where `path` ("/") can take none
         files : suffixes of further twins, of `FILES`
+        figures : whether the page has figures, each at the twins' path with its name and a suffix
+            of `DRAWN`, such as /datasets/NAME.field.svg; the first also without its name
         """
 
         def register(endpoint: Endpoint) -> Endpoint:
             # The twins first: a part of a path would take their suffix for its own.
-            for suffix in (*TWINS, *files):
+            drawn = [f"{name}{s}" for name in (".{drawn}", "") for s in DRAWN] if figures else []
+            for suffix in (*drawn, *TWINS, *files):
                 self.add_api_route((twin or path) + suffix, endpoint, response_class=View)
             self.add_api_route(path, endpoint, response_class=View)
             return endpoint

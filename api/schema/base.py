@@ -131,6 +131,18 @@ class CitedQuestion(TableQuestion):
     )
 
 
+class DrawnQuestion(TableQuestion):
+    """The query of a figure: a table, or what Plotly draws."""
+
+    format: Annotated[Literal["json", "csv", "plotly"] | None, GIVEN] = Field(  # type: ignore[assignment]  # as above
+        None,
+        description=(
+            "Response format: JSON, CSV, or the figure as Plotly JSON (`data` and `layout`); must "
+            "be one the Accept header allows. By default the header decides."
+        ),
+    )
+
+
 class OnlyFormat(TableQuestion):
     """The query of a table that takes no other parameters."""
 

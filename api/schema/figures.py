@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from api.schema.base import Shape, example
+from api.schema.base import DrawnQuestion, Shape, example
 from api.schema.flows import LeftOut
 from api.schema.parameters import OneOf
 from api.schema.studies import StudyFilters
@@ -17,13 +17,13 @@ ROWS, COLUMNS = "detector", "mask"
 """Attributes of the evidence map where none are asked for."""
 
 
-class FigureQuery(StudyFilters):
+class FigureQuery(DrawnQuestion, StudyFilters):
     """Of which studies."""
 
     model_config = example(detector=["Event"])
 
 
-class MatrixQuery(StudyFilters):
+class MatrixQuery(DrawnQuestion, StudyFilters):
     """Of which studies, by which two attributes or what their values imply."""
 
     model_config = example(rows="detector", columns="mask", detector=["PSD"], mask=["Lens"])

@@ -24,6 +24,7 @@ class Document:
     links : values of the Link header
     cited : studies that can be had as references; None where there are none, or columns were chosen
     saved_as : name of a file of references, without suffix
+    plotly : the figure of a document that is one, `data` and `layout`
     """
 
     document: Mapping[str, Any]
@@ -32,6 +33,7 @@ class Document:
     links: Sequence[str] = ()
     cited: Sequence[Row] | None = None
     saved_as: str = "studies"
+    plotly: Mapping[str, Any] | None = None
 
     def table(self) -> str:
         """Return the CSV."""

@@ -43,4 +43,4 @@ def figure(known: Knowledge, figure: FigureName, query: FigureQuery) -> Document
 
 def document_of(found: Figure) -> Document:
     """Return a figure as a document."""
-    return Document(found.to_dict(), found.columns, lambda: found.rows)
+    return Document(found.to_dict(), found.columns, lambda: found.rows, plotly=found.plotly)

@@ -22,7 +22,9 @@ from api.web.negotiation import (
     CSV,
     JSON,
     PARQUET,
+    PLOTLY,
     PNG,
+    SVG,
     for_spreadsheets,
     wanted_type,
 )
@@ -104,6 +106,38 @@ class CitedAnswer(Answer):
         saved = f'attachment; filename="{self.saved_as}.{citations.SUFFIXES[form]}"'
         text = citations.FORMS[form](self.cited)
         return self.written(text, wanted, **{"Content-Disposition": saved})
+
+
+class FigureAnswer(Answer):
+    """An answer that Plotly can draw, too."""
+
+    media_types: ClassVar[tuple[str, ...]] = (JSON, CSV, PLOTLY)
+    plotly: Mapping[str, Any] | None
+
+    @classmethod
+    def of(cls, found: Document) -> Self:
+        """Return a document of the service as an answer."""
+        made = super().of(found)
+        made.plotly = found.plotly
+        return made
+
+    def representation(self, wanted: str) -> Response:
+        """Return the answer in a media type."""
+        if wanted != PLOTLY:
+            return super().representation(wanted)
+        return Specification(to_json(self.plotly))
+
+
+class Specification(Response):
+    """A figure for Plotly."""
+
+    media_type = PLOTLY
+
+
+class Drawing(Response):
+    """An SVG."""
+
+    media_type = f"{SVG}; charset=utf-8"
 
 
 class Picture(Response):

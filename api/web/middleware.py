@@ -95,7 +95,7 @@ class EveryResponse:
             headers = MutableHeaders(raw=begin["headers"])
             headers.update(more)
             if begin["status"] == 200 and headers.get("cache-control") != "no-store":
-                headers["cache-control"] = "no-cache"
+                headers.setdefault("cache-control", "no-cache")
                 headers["etag"] = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
                 if inner["method"] == "GET" and _matches(asked, headers["etag"]):
                     begin["status"], body = 304, b""

@@ -13,12 +13,14 @@ from api.service.problems import Problem, Violation
 JSON = "application/json"
 CSV = "text/csv"
 PNG = "image/png"
+SVG = "image/svg+xml"
+PLOTLY = "application/vnd.plotly.v1+json"
 PARQUET = "application/vnd.apache.parquet"
 BIBTEX = "application/x-bibtex"
 RIS = "application/x-research-info-systems"
 CSL = "application/vnd.citationstyles.csl+json"
 CITATIONS = {"bibtex": BIBTEX, "ris": RIS, "csl": CSL}
-FORMATS = {"json": JSON, "csv": CSV, **CITATIONS}
+FORMATS = {"json": JSON, "csv": CSV, "plotly": PLOTLY, **CITATIONS}
 """What `format` in a query calls them."""
 CONTENT_TYPES = {
     CSV: "text/csv; charset=utf-8; header=present",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from html import unescape
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -11,6 +13,7 @@ import pytest
 from api.figures.catalogue import TITLES
 from tests.api.conftest import Client
 
+PLOTLY = "application/vnd.plotly.v1+json"
 SVG = "{http://www.w3.org/2000/svg}"
 HTML = "text/html,*/*;q=0.8"
 PATHS = [*(f"/figures/{name}" for name in TITLES), "/figures/matrix"]
@@ -20,10 +23,11 @@ PATHS = [*(f"/figures/{name}" for name in TITLES), "/figures/matrix"]
 def test_a_figure_has_a_page_a_drawing_and_a_table_in_two_formats(atlas: Client, path: str) -> None:
     page = atlas.get(path, accept=HTML)
     assert page.status_code == 200
-    assert page.text.count("<svg ") == 3
+    assert page.text.count(f'src="{path}.svg"') == 1
+    assert f'data-spec="{path}.plotly.json"' in page.text
     document = atlas.get(f"{path}.json").json()
     assert document == atlas.get(f"/v1{path}").json()
-    assert unescape(page.text).count(document["text"][0]) == 1
+    assert unescape(page.text).count(document["text"][0]) == 3  # both pictures, and below them
     table = atlas.get(f"{path}.csv")
     assert table.content == atlas.get(f"/v1{path}", accept="text/csv").content
     assert table.text.splitlines()[0].split(",") == document["columns"]
@@ -32,19 +36,39 @@ def test_a_figure_has_a_page_a_drawing_and_a_table_in_two_formats(atlas: Client,
     root = ET.fromstring(drawing.text)
     assert root.find(f"{SVG}title") is not None
     assert root.find(f"{SVG}desc") is not None
+    given = atlas.get(f"{path}.plotly.json")
+    assert given.headers["content-type"] == PLOTLY
+    asked = atlas.get(f"/v1{path}?format=plotly")
+    assert asked.json()["layout"] == given.json()["layout"]
+    assert asked.content == atlas.get(f"/v1{path}", accept=PLOTLY).content
+    assert atlas.get(f"{path}.plotly.json?detector=CCD").json() != given.json()
 
 
-def marks(page: str) -> list[tuple[str, str]]:
-    """Title and address of every mark of the first drawing that leads somewhere."""
-    first = page[page.index("<svg ") : page.index("</svg>")]
-    found = re.findall(r'<a class="mark" href="([^"]*)"[^>]*><title>(.*?)</title>', first)
-    return [(unescape(title), unescape(href)) for href, title in found]
+def marks(part: Any) -> list[tuple[str, str]]:
+    """Text and address of every mark of a specification that leads somewhere."""
+    if isinstance(part, dict) and "text" in part and "href" in part:
+        return [(part["text"], part["href"])]
+    inside = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+    return [mark for one in inside for mark in marks(one)]
+
+
+def test_plotly_is_served_from_here_packed_and_under_a_name_of_its_content(atlas: Client) -> None:
+    page = atlas.get("/figures/error", accept=HTML).text
+    (address,) = set(re.findall(r'data-plotly="([^"]*)"', page))
+    packed = atlas.get(address, headers={"Accept-Encoding": "gzip"})
+    assert packed.headers["content-encoding"] == "gzip"
+    assert "immutable" in packed.headers["cache-control"]
+    plain = atlas.get(address, headers={"Accept-Encoding": "identity"})
+    assert "content-encoding" not in plain.headers
+    assert hashlib.sha256(plain.content).hexdigest()[:12] in address
+    assert b"plotly.js v" in plain.content[:100]
 
 
 @pytest.mark.parametrize("path", [*PATHS, "/figures/error?mask=Slit&mask=Multi-Ap."])
 def test_every_mark_leads_to_as_many_studies_as_it_says(atlas: Client, path: str) -> None:
     page = atlas.get(path, accept=HTML).text
-    found = marks(page)
+    base, _, query = path.partition("?")
+    found = marks(atlas.get(f"{base}.plotly.json?{query}").json())
     assert len(found) > 8
     asked: dict[str, int] = {}
     for title, href in found:
