@@ -10,10 +10,11 @@ from functools import lru_cache
 
 from registry.answer import Answer
 from registry.design_table import DesignTable
-from registry.flows import LeftOut, Link, Node, drawn
+from registry.flows import Counting, LeftOut, Link, Node, drawn
 from registry.studies import Facts, Study
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
+GROUPED_LEVELS = (*PATH_LEVELS[:3], "model_category", "extractor_family")
 
 Path = tuple[str, ...]
 
@@ -22,14 +23,20 @@ Path = tuple[str, ...]
 class AnswerFlow:
     """Paths from task to extractor with their studies, and the nodes and links they make up."""
 
+    levels: tuple[str, ...]
     paths: Mapping[Path, tuple[str, ...]]
     nodes: tuple[Node, ...]
     links: tuple[Link, ...]
     left_out: tuple[LeftOut, ...]
 
 
-def answer_flow(answer: Answer) -> AnswerFlow:
+def answer_flow(
+    answer: Answer, counting: Counting = "studies", *, grouped: bool = False
+) -> AnswerFlow:
     """Return the paths that studies took to the designs of an answer.
+
+    Nodes and links have models and extractors by their families where `grouped`, and are counted as
+    `registry.flows.flows` counts.
 
     A path exists if one study has all five of its values, on a sensor that it can have had; what a
     study only compared is none of its values here.
@@ -45,7 +52,9 @@ def answer_flow(answer: Answer) -> AnswerFlow:
         taken = tuple(key for key in studies if key in kept)
         if taken and path[0] in tasks and matching[designs].any():
             found[path] = taken
-    return AnswerFlow(found, *_drawn(found, table.facts), _left_out(table.facts))
+    levels = GROUPED_LEVELS if grouped else PATH_LEVELS
+    nodes, links = _drawn(found, table.facts, levels, counting)
+    return AnswerFlow(levels, found, nodes, links, _left_out(table.facts))
 
 
 @lru_cache(maxsize=4)
@@ -84,18 +93,26 @@ def _paths_of(study: Study) -> Iterator[Path]:
 
 
 def _drawn(
-    paths: Mapping[Path, tuple[str, ...]], facts: Facts
+    paths: Mapping[Path, tuple[str, ...]], facts: Facts, levels: Path, counting: Counting
 ) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
-    """Return nodes and links of paths in chart order, each with its distinct studies."""
+    """Return nodes and links of paths in chart order, a study shared out over its paths."""
+    took: dict[str, dict[Path, None]] = {}
+    for path, studies in paths.items():
+        shown = tuple(map(facts.taxonomy.derived_values, levels, path))
+        for study in studies:
+            took.setdefault(study, {})[shown] = None
     on_node: dict[tuple[int, str], dict[str, Fraction]] = {}
     on_link: dict[tuple[int, str, str], dict[str, Fraction]] = {}
-    by_study = sorted((study, path) for path, studies in paths.items() for study in studies)
-    for study, path in by_study:
-        for level, value in enumerate(path):
-            on_node.setdefault((level, value), {})[study] = Fraction(1)
-        for level, (one, next_one) in enumerate(itertools.pairwise(path)):
-            on_link.setdefault((level, one, next_one), {})[study] = Fraction(1)
-    return drawn(PATH_LEVELS, on_node, on_link, facts.taxonomy)
+    for study in sorted(took):
+        share = Fraction(1, len(took[study]))
+        for path in took[study]:
+            for at, value in enumerate(path):
+                weights = on_node.setdefault((at, value), {})
+                weights[study] = weights.get(study, Fraction()) + share
+            for at, pair in enumerate(itertools.pairwise(path)):
+                weights = on_link.setdefault((at, *pair), {})
+                weights[study] = weights.get(study, Fraction()) + share
+    return drawn(levels, on_node, on_link, facts.taxonomy, counting)
 
 
 def _left_out(facts: Facts) -> tuple[LeftOut, ...]:

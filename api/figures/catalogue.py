@@ -18,7 +18,7 @@ from api.schema.figures import COLUMNS, ROWS
 from api.schema.parameters import OneOf
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
-from registry.flows import Where
+from registry.flows import Counting, Where
 from registry.studies import Facts
 from registry.taxonomy import unknown_name
 
@@ -54,6 +54,7 @@ def figure(
     facts: Facts,
     where: Where | None = None,
     page: str | None = None,
+    counting: Counting = "studies",
 ) -> Figure:
     """Return one of the survey's figures.
 
@@ -63,6 +64,7 @@ def figure(
     facts : the studies
     where : keeps some of them, as `registry.flows.flows` does
     page : address of the figure's page, with its query; where rows of its table are linked to
+    counting : of flows, as `registry.flows.flows` counts
 
     Raises
     ------
@@ -74,7 +76,7 @@ def figure(
     wanted = where or {}
     addresses = Addresses(facts, page or f"/figures/{name}", wanted)
     if name in CHAINS:
-        return flow_figure(name, facts, addresses, wanted)
+        return flow_figure(name, facts, addresses, wanted, counting)
     return _OTHERS[name][0](facts, addresses, wanted)
 
 

@@ -13,7 +13,9 @@ from api.figures.sankey import Band, Stage, sankey
 from api.figures.specification import Plotly, colour, mark
 from api.schema.figures import FlowRow
 from api.schema.table import columns_of
-from registry.flows import Flows, Node, Where, flows
+from registry.answer import Answer
+from registry.flows import Counting, Flows, Node, Where, flows
+from registry.paths import answer_flow
 from registry.studies import Facts
 from registry.taxonomy import Taxonomy
 
@@ -61,7 +63,13 @@ CHAINS: Mapping[str, Chain] = MappingProxyType(
 _PINNED = ("accuracy",)  # from coarse to ultra fine, whatever crosses
 
 
-def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> Figure:
+def flow_figure(
+    name: str,
+    facts: Facts,
+    addresses: Addresses,
+    where: Where,
+    counting: Counting = "studies",
+) -> Figure:
     """Return a Sankey diagram of the studies that meet `where`.
 
     Parameters
@@ -69,7 +77,7 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
     name : of `CHAINS`
     facts : the studies
     addresses : where marks lead
-    where : as `registry.flows.flows` takes it
+    where, counting : as `registry.flows.flows` takes them
 
     Raises
     ------
@@ -77,11 +85,38 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
         As `registry.flows.flows`.
     """
     chain = CHAINS[name]
-    found = flows(chain.levels, where, facts=facts)
+    found = flows(chain.levels, where, counting, facts=facts)
+    return _figure(name, chain, found, facts, addresses)
+
+
+def answer_figure(
+    answer: Answer,
+    facts: Facts,
+    page: str,
+    counting: Counting = "studies",
+    *,
+    grouped: bool = True,
+) -> Figure:
+    """Return a Sankey diagram of the studies behind an answer.
+
+    Parameters
+    ----------
+    answer, counting, grouped : as `registry.paths.answer_flow` takes them
+    facts : the studies
+    page : address of the answer, with its query
+    """
+    made = answer_flow(answer, counting, grouped=grouped)
+    keys = tuple(sorted({key for node in made.nodes for key in node.studies}))
+    found = Flows(None, made.levels, counting, keys, made.nodes, made.links, made.left_out)
+    chain = Chain("Decision flow", made.levels, "From task to feature extractor.")
+    return _figure("flow", chain, found, facts, Addresses(facts, page, {}))
+
+
+def _figure(name: str, chain: Chain, found: Flows, facts: Facts, addresses: Addresses) -> Figure:
     nodes = {node.id: node for node in found.nodes}
     rows = [
-        *(_row(node, None, node.studies) for node in found.nodes),
-        *(_row(nodes[one.source], nodes[one.target], one.studies) for one in found.links),
+        *(_row(node, None, node.studies, node.count) for node in found.nodes),
+        *(_row(nodes[x.source], nodes[x.target], x.studies, x.value) for x in found.links),
     ]
     return Figure(
         name=name,
@@ -90,13 +125,13 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
         text=_text(found, facts),
         columns=columns_of(FlowRow),
         rows=tuple(rows),
-        plotly=flow_plotly(found, facts.taxonomy, addresses),
+        plotly=_plotly(found, facts.taxonomy, addresses),
         studies=len(found.studies),
         left_out=found.left_out,
     )
 
 
-def flow_plotly(found: Flows, taxonomy: Taxonomy, addresses: Addresses) -> Plotly:
+def _plotly(found: Flows, taxonomy: Taxonomy, addresses: Addresses) -> Plotly:
     """Return a flow as a Sankey diagram; its rows are the nodes, then the links."""
     stages: list[Stage] = []
     for at, node in enumerate(found.nodes):
@@ -142,7 +177,9 @@ def flow_plotly(found: Flows, taxonomy: Taxonomy, addresses: Addresses) -> Plotl
     return sankey(stages, bands, [wording.LEVELS[level] for level in found.levels], pinned)
 
 
-def _row(node: Node, target: Node | None, studies: tuple[str, ...]) -> dict[str, object]:
+def _row(
+    node: Node, target: Node | None, studies: tuple[str, ...], count: float
+) -> dict[str, object]:
     """Return a row of the table: of a value, or of a flow from it to a value of the next level."""
     return {
         "level": node.level,
@@ -151,7 +188,7 @@ def _row(node: Node, target: Node | None, studies: tuple[str, ...]) -> dict[str,
         "next_level": "" if target is None else target.level,
         "next_value": "" if target is None else target.value,
         "next_name": "" if target is None else target.name,
-        "count": len(studies),
+        "count": count,
         "studies": list(studies),
     }
 

@@ -19,8 +19,6 @@ from benchmark.plot_style import svg
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WIDTH = 1000.0
-"""Width of a picture in units of its letters' size; the page scales it."""
 _FONT = "'DejaVu Sans', sans-serif"
 _HEX = re.compile(r"#[0-9a-f]{6}")
 
@@ -70,7 +68,8 @@ def _figure(plotly: Mapping[str, Any]) -> Figure:
     from api.figures import plots, shapes  # noqa: PLC0415 - likewise
 
     rcParams.update({"font.size": 12, "text.color": TEXT, "axes.labelcolor": TEXT})  # of a context
-    size = (WIDTH / 72, plotly["layout"]["height"] / 72)
+    layout = plotly["layout"]
+    size = (layout["meta"]["picture"] / 72, layout["height"] / 72)
     figure = Figure(figsize=size, dpi=72)
     figure.patch.set_visible(False)
     kinds = {trace["type"] for trace in plotly["data"]}

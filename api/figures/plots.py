@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from api.figures.specification import AXIS, LINE, SURFACE, TEXT, colour
 
@@ -32,8 +32,8 @@ _MARKERS = {
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 _STEPS = {"linear": "default", "hv": "steps-post", "vh": "steps-pre"}
 _ALIGNED = {
-    "top": ("center", "bottom", 0, 6),
-    "bottom": ("center", "top", 0, -6),
+    "top center": ("center", "bottom", 0, 6),
+    "bottom center": ("center", "top", 0, -6),
     "middle right": ("left", "center", 7, 0),
     "middle left": ("right", "center", -7, 0),
     "middle center": ("center", "center", 0, 0),
@@ -78,7 +78,8 @@ def draw(figure: Figure, plotly: Mapping[str, Any]) -> None:
     for axes, known in legends.values():
         if len(known) > 1 and layout.get("showlegend", True):
             above = 1.0 if axes.xaxis.get_ticks_position() != "top" else 1.12
-            side_by_side = max(1, min(len(known), 140 // max(map(len, known))))
+            letters = layout["meta"]["picture"] // 7 - 5 * len(known)
+            side_by_side = max(1, min(len(known), letters // max(map(len, known))))
             axes.legend(known.values(), known.keys(), ncols=side_by_side, frameon=False,
                         loc="lower left", bbox_to_anchor=(0, above), borderaxespad=0.2,
                         fontsize=11)  # fmt: skip
@@ -275,6 +276,9 @@ class _Over:
             of.set_ticks(self.at(letter, axis["tickvals"]), labels=axis.get("ticktext"))
         elif names is not None:
             of.set_ticks(range(len(names)), labels=names)
+        elif axis.get("type") == "log":
+            low, high = of.get_view_interval()
+            of.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300 * low else (1.0,)))
         if names is None and "ticktext" not in axis:
             suffix = axis.get("ticksuffix", "")
             of.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}{suffix}"))

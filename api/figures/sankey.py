@@ -12,6 +12,7 @@ from api.figures.specification import HOVER, MUTED, Plotly, faint, specification
 PAD, THICKNESS = 17, 14
 """Between nodes of a column, which leaves room for a label, and width of a node, px."""
 _BAND, _LIT = 0.32, 0.7  # how much a band hides of what lies below it
+_WIDER = 0.3  # how much wider the last gap between columns is
 _MARGIN = {"l": 4, "r": 4, "t": 28, "b": 8}
 
 
@@ -60,6 +61,8 @@ def sankey(
     number = {node.id: at for at, node in enumerate(nodes)}
     tone = {node.id: node.colour for node in nodes}
     last = len(headings) - 1
+    # the last column's labels stand left of it, beside those of the column before
+    across = [at / (last + _WIDER) for at in range(last)] + [1.0]
     trace = {
         "type": "sankey",
         "arrangement": "fixed",
@@ -67,7 +70,7 @@ def sankey(
             "label": [node.label for node in nodes],
             "color": [node.colour for node in nodes],
             # Plotly takes 0 for no place
-            "x": [min(max(node.column / last, 0.001), 0.999) for node in nodes],
+            "x": [min(max(across[node.column], 0.001), 0.999) for node in nodes],
             "y": [places[node.id] for node in nodes],
             "customdata": [node.mark for node in nodes],
             "hovertemplate": HOVER,
@@ -88,7 +91,7 @@ def sankey(
     notes = [
         {
             "text": heading,
-            "x": at / last,
+            "x": across[at],
             "y": 1,
             "xref": "paper",
             "yref": "paper",

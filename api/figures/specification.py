@@ -83,7 +83,7 @@ def mark(text: str, href: str | None = None, **more: Any) -> dict[str, Any]:
 
 def axis(title: str = "", **more: Any) -> dict[str, Any]:
     """Return an axis with a title; `more` as `layout.xaxis` has it, such as `type="log"`."""
-    return {"title": {"text": title}, **more}
+    return {"title": {"text": title, "font": {"size": 13}}, **more}
 
 
 def legend(y: float = 1.0) -> dict[str, Any]:
@@ -93,7 +93,12 @@ def legend(y: float = 1.0) -> dict[str, Any]:
 
 
 def specification(
-    data: Sequence[Mapping[str, Any]], *, height: int, narrowest: int = 340, **layout: Any
+    data: Sequence[Mapping[str, Any]],
+    *,
+    height: int,
+    narrowest: int = 340,
+    picture: int = 1000,
+    **layout: Any,
 ) -> Plotly:
     """Return a figure for Plotly, in the atlas's colours and letters.
 
@@ -103,9 +108,11 @@ def specification(
         first picture
     height : px
     narrowest : width in px below which the page scrolls the figure sideways
+    picture : width in px for which the first picture is laid out; a page scales it
     layout : further members of the layout; axes get the colours of the others
     """
     shared = {"gridcolor": LINE, "linecolor": AXIS, "zeroline": False, "automargin": True}
+    shared |= {"exponentformat": "none", "minorloglabels": "complete"}
     layout |= {name: {**shared, **of} for name, of in layout.items() if _AXIS.fullmatch(name)}
     whole: dict[str, Any] = {
         "height": height,
@@ -119,7 +126,8 @@ def specification(
         **layout,
     }
     drawn = _COLOUR.findall(json.dumps([list(data), whole]))
-    whole["meta"] = {"narrowest": narrowest, "dark": {one: on_dark(one) for one in set(drawn)}}
+    widths = {"narrowest": narrowest, "picture": picture}
+    whole["meta"] = {**widths, "dark": {one: on_dark(one) for one in set(drawn)}}
     whole["meta"]["dark"] = dict(sorted(whole["meta"]["dark"].items()))
     return {"data": list(data), "layout": whole}
 

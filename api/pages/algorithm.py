@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from itertools import groupby
@@ -9,12 +10,13 @@ from typing import Annotated, Any
 
 from fastapi import Path
 
+from api.figures.figure import Figure
+from api.figures.lines import Line, line_figure
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_algorithm
 from api.pages import boards
 from api.pages.methods import docstring_parts
-from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
 from api.pages.terms import term_name
 from api.schema.algorithms import Algorithm, AlgorithmsQuery
@@ -66,7 +68,7 @@ def _value(role: str, entry: Mapping[str, str], every: Sequence[Implementation])
     return {**entry, "name": term_name(entry["value"], role), "implementations": found}
 
 
-@router.page("/algorithms/{name}")
+@router.page("/algorithms/{name}", figures=True)
 async def algorithm(known: Known, name: Name) -> View:
     """One implementation: equations, errors on reference features, field, ranks, an example."""
     about = next(i for i in known.catalogue.implementations(None) if i.name == name)
@@ -79,6 +81,8 @@ async def algorithm(known: Known, name: Name) -> View:
         else known.catalogue.models[name]
     )
     landing = landing_of_algorithm(name, identity())
+    swept = _sweep(known, name) if about.role == "extractor" else []
+    field = boards.field_chart(places)
     return View(
         "algorithm.html",
         Document(document, columns, lambda: [{**about.to_dict(), **place} for place in places]),
@@ -87,8 +91,9 @@ async def algorithm(known: Known, name: Name) -> View:
         about=about,
         stages=docstring_parts(made),
         places=places,
-        swept=_sweep(known, name) if about.role == "extractor" else [],
-        field=boards.field_chart(places),
+        figures=(*(chart for _, chart in swept), field),
+        swept=swept,
+        field=field,
         assessed=_assess(known, name),
         relatives=[
             i
@@ -98,7 +103,7 @@ async def algorithm(known: Known, name: Name) -> View:
     )
 
 
-def _sweep(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
+def _sweep(known: Knowledge, name: str) -> list[tuple[str, Figure]]:
     """Return a chart a sweep and series: the error on reference features with its bound."""
     charts = []
     for sweep, across in SWEPT:
@@ -108,18 +113,19 @@ def _sweep(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
                 by[row["series"]].append(row)
         for series, rows in by.items():
             unit = rows[0]["unit"]
-            chart = LineChart(
+            chart = line_figure(
+                re.sub(r"[^a-z0-9]+", "-", f"{sweep} {series}".lower()),
+                f"Error of {name} against {across} on {series}, with its bound",
                 [
                     Line("error", [(row["value"], row["rms"] or None) for row in rows]),
                     Line("bound", [(r["value"], r["bound"] or None) for r in rows], is_bound=True),
                 ],
                 across,
                 f"RMS error, {unit}",
-                f"Error of {name} against {across} on {series}, with its bound",
                 log_across=sweep != "phase",
             )
-            if chart.has_points:
-                charts.append((f"Against {across.split(',')[0]}: {series}", chart, series))
+            if chart.rows:
+                charts.append((f"Against {across.split(',')[0]}: {series}", chart))
     return charts
 
 

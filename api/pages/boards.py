@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api.pages.plots.line_chart import Line, LineChart
+from api.figures.figure import Figure
+from api.figures.lines import Line, line_figure
 from api.service.knowledge import Knowledge
 from benchmark.metrics.rings import RINGS
 
@@ -82,12 +83,13 @@ def field_line(row: Row, name: str) -> Line:
     return Line(name, points[: last + 1])
 
 
-def field_chart(rows: Sequence[Row], named: str = "dataset") -> LineChart:
+def field_chart(rows: Sequence[Row], named: str = "dataset") -> Figure:
     """Return errors over the field of the first few rows, each called by one of its members."""
     lines = [field_line(row, str(row[named])) for row in rows[:MOST_LINES]]
-    return LineChart(
-        [line for line in lines if line.points],
+    return line_figure(
+        "field",
+        "Error against the Sun's angle off the boresight",
+        lines,
         "angle off the boresight, °",
         "Unit 0 RMS, °",
-        "Error against the Sun's angle off the boresight",
     )

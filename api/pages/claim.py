@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 from fastapi import Path, Query
 
-from api.pages.plots.line_chart import Line, LineChart
+from api.figures.figure import Figure
+from api.figures.lines import Line, line_figure
 from api.pages.serving import PageRouter, View
 from api.schema.claims import ClaimsQuery
 from api.schema.words import ClaimId
@@ -42,7 +43,7 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
     return View("claims.html", answer, asked=query, verdicts=VERDICTS, every=every, changed=changed)
 
 
-@router.page("/claims/{id}")
+@router.page("/claims/{id}", figures=True)
 async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: A002 - as the service
     """Show a claim: statement, criteria, results and plot."""
     answer = service.claim(known, id)
@@ -51,10 +52,12 @@ async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: 
     at = ids.index(id)
     said = answer.document["study"]
     text = " ".join(str(answer.document[name]) for name in ("measured_on", "statement"))
+    chart = _chart(answer.document)
     return View(
         "claim.html",
         answer,
-        chart=_chart(answer.document),
+        figures=(chart,),
+        chart=chart,
         verdicts=VERDICTS,
         results=RESULTS,
         studies=[key for key in known.facts.studies if key in said],
@@ -72,7 +75,7 @@ def _names(text: str, name: str) -> bool:
     return f" {name} " in f" {cleaned} "
 
 
-def _chart(document: Mapping[str, Any]) -> LineChart:
+def _chart(document: Mapping[str, Any]) -> Figure:
     lines = [
         Line(
             name,
@@ -90,7 +93,11 @@ def _chart(document: Mapping[str, Any]) -> LineChart:
     ]
     spread = [x for line in drawn for x, _ in line.points]
     wide = bool(spread) and min(spread) > 0 and max(spread) / min(spread) > 20
-    return LineChart(
-        drawn, across, document["y_label"] or "", f"Measurements for claim {document['id']}",
+    return line_figure(
+        "trials",
+        f"Measurements for claim {document['id']}",
+        drawn,
+        across,
+        document["y_label"] or "",
         log_across=wide,
-    )  # fmt: skip
+    )

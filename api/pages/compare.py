@@ -8,8 +8,9 @@ from typing import Annotated, Any
 from fastapi import Query, Request
 from pydantic import Field
 
+from api.figures.figure import Figure
+from api.figures.lines import Line, line_figure
 from api.pages.editions import edition_shown
-from api.pages.plots.line_chart import Line, LineChart
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
 from api.schema import words
@@ -45,7 +46,7 @@ class CompareQuery(OfEdition):
     pipeline: Several[str] = several("Two to four of extractor:model on the data set.")
 
 
-@router.page("/compare")
+@router.page("/compare", figures=True)
 async def compare(known: Known, query: Annotated[CompareQuery, Query()], request: Request) -> View:
     """Side by side what was asked for; else what can be."""
     document = _compare(known.of(query.edition), query)
@@ -56,6 +57,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()], request
         for i in items
     ]
     built = [f"{row['detector']}{SEPARATOR}{row['mask']}" for row in best_built(known)]
+    chart = _chart(items, names)
     return View(
         "compare.html",
         Document(document, COLUMNS, lambda: [{c: i.get(c) for c in COLUMNS} for i in items]),
@@ -72,7 +74,8 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()], request
         every_condition=list(dict.fromkeys(c for i in items for c in i["conditions"])),
         available=AVAILABLE,
         machine=timed.processor if (timed := known.measurements.times.machine) else "",
-        chart=_chart(items, names),
+        figures=(chart,),
+        chart=chart,
     )
 
 
@@ -100,7 +103,7 @@ def _ways(known: Knowledge, dataset: str | None) -> list[str]:
     return list(dict.fromkeys(f"{r['extractor']}{SEPARATOR}{r['model']}" for r in rows))
 
 
-def _chart(items: list[Mapping[str, Any]], names: list[str]) -> LineChart:
+def _chart(items: list[Mapping[str, Any]], names: list[str]) -> Figure:
     lines = [
         Line(
             name,
@@ -109,9 +112,10 @@ def _chart(items: list[Mapping[str, Any]], names: list[str]) -> LineChart:
         for item, name in zip(items, names, strict=True)
         if item["rings"]
     ]
-    return LineChart(
+    return line_figure(
+        "field",
+        "Errors of those compared against the Sun's angle off the boresight",
         lines,
         "angle off the boresight, °",
         "Unit 0 RMS, °",
-        "Errors of those compared against the Sun's angle off the boresight",
     )

@@ -8,12 +8,13 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query
 from pydantic import Field
 
+from api.figures.figure import Figure
+from api.figures.lines import Line, line_figure
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.served import MEASURED
 from api.pages import boards
-from api.pages.plots.heat import heat_map
-from api.pages.plots.line_chart import Line, LineChart
+from api.pages.heat import heat_map
 from api.pages.serving import PageRouter, View
 from api.real.scores import beside_standard
 from api.real.sets import SETS
@@ -93,7 +94,7 @@ async def datasets(known: Known) -> View:
     )
 
 
-@router.page("/datasets/{name}")
+@router.page("/datasets/{name}", figures=True)
 async def dataset(
     known: Known,
     name: Annotated[words.DatasetName, Path()],
@@ -119,6 +120,7 @@ async def dataset(
         (name, realism["extractor"], realism["model"])
     )
     landing = landing_of_dataset(known, name)
+    field, curve = _field(board), _curve(known, name)
     return View(
         "dataset.html",
         Document(document, BOARD_COLUMNS, lambda: board),
@@ -127,9 +129,10 @@ async def dataset(
         condition=condition,
         shown=shown,
         sampled=samples.has_samples(name, known.measurements.directory),
-        field=_field(board),
+        figures=(field, curve),
+        field=field,
         heat=heat_map(every, card["conditions"], condition, WARM),
-        curve=_curve(known, name),
+        curve=curve,
         held=sentences.verdict(held).sentence if held else None,
         facts=next((one for one in every_board if one["name"] == name), None),
         realism=realism,
@@ -137,30 +140,27 @@ async def dataset(
     )
 
 
-def _field(board: Sequence[Mapping[str, Any]]) -> LineChart:
+def _field(board: Sequence[Mapping[str, Any]]) -> Figure:
     best = [row for row in board if row["best_of_extractor"]][: boards.MOST_LINES]
     named = [{**row, "name": f"{row['extractor']} + {row['model']}"} for row in best]
     return boards.field_chart(named, "name")
 
 
-def _curve(known: Knowledge, name: str) -> LineChart:
+def _curve(known: Knowledge, name: str) -> Figure:
     rows = [row for row in known.measurements.curves if row["dataset"] == name]
     lines = [
         Line(
             f"{row['extractor']} + {row['model']}",
             [(point["poses"], point["middle_deg"]) for point in row["points"]],
-            [
-                (p["poses"], p["least_deg"], p["largest_deg"])
-                for p in row["points"]
-                if p["least_deg"]
-            ],
+            [(p["poses"], p["least_deg"] or None, p["largest_deg"]) for p in row["points"]],
         )
         for row in rows
     ]
-    return LineChart(
+    return line_figure(
+        "poses",
+        f"Error of the leaders on {name} against the number of calibration poses",
         lines,
         "calibration poses",
         "RMS, °",
-        f"Error of the leaders on {name} against the number of calibration poses",
         log_across=True,
     )

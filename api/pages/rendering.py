@@ -12,7 +12,7 @@ from algorithms.display_names import display_name
 from api import addresses
 from api.pages import numbers, terms
 from api.pages.methods import mark_up
-from api.pages.plots.sensors import sensor
+from api.pages.sensor_drawings import sensor
 from api.web.static_files import plotly_name
 
 

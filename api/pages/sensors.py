@@ -141,7 +141,7 @@ async def mask(
     return _one(known, query, request, attribute="mask", value=mask)
 
 
-@router.page("/architectures/{detector}/{mask}")
+@router.page("/architectures/{detector}/{mask}", figures=True)
 async def architecture(
     known: Known,
     detector: Annotated[words.Detector, Path()],
@@ -168,6 +168,7 @@ async def architecture(
         for card in cards
         for row in boards.first_rows(known, card["name"])[:1]
     ]
+    field = boards.field_chart(leaders, "name")
     return View(
         "architecture.html",
         answer,
@@ -177,5 +178,6 @@ async def architecture(
         studies=studies,
         editions=edition_shown(known, query.edition, request),
         cards=cards,
-        field=boards.field_chart(leaders, "name"),
+        figures=(field,),
+        field=field,
     )

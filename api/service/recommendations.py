@@ -229,7 +229,7 @@ def flow(answer: Answer) -> AnswerFlow:
     """Return the decision flow behind an answer."""
     made = answer_flow(answer)
     return AnswerFlow(
-        levels=list(PATH_LEVELS),
+        levels=list(made.levels),
         paths=[
             Path(**dict(zip(PATH_LEVELS, path, strict=True)), studies=list(studies))
             for path, studies in made.paths.items()

@@ -9,7 +9,6 @@ export function h(tag, attributes = {}, ...children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else if (name === "css") for (const [k, v] of Object.entries(value)) element.style.setProperty(k, v);
     else if (name.startsWith("aria-")) element.setAttribute(name, String(value));
     else if (value === true) element.setAttribute(name, "");
     else if (value !== false) element.setAttribute(name, String(value));
@@ -18,37 +17,7 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** The same for an element of a drawing. */
-export function svg(tag, attributes = {}, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else element.setAttribute(name, String(value));
-  }
-  element.append(...children.flat(Infinity).filter(Boolean));
-  return element;
-}
-
 export const byId = (id) => document.getElementById(id);
-
-/** A row of radio buttons drawn as one control. options: [[value, label], ...] */
-export function segmented(legend, name, options, current, choose) {
-  return h("fieldset", { class: "segmented" },
-    h("legend", { class: "visually-hidden" }, legend),
-    options.map(([value, label]) => h("label", {},
-      h("input", {
-        type: "radio", name, value, checked: value === current,
-        onchange: () => choose(value),
-      }),
-      h("span", {}, label))));
-}
-
-/** A labelled select. options: [[value, label], ...] */
-export function choice(label, id, options, current, choose) {
-  return h("label", { class: "choice", for: id }, h("span", {}, label),
-    h("select", { id, onchange: (event) => choose(event.target.value) },
-      options.map(([value, text]) => h("option", { value, selected: value === current }, text))));
-}
 
 /** A command or address to copy. */
 export function copyable(text, label) {

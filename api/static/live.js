@@ -44,17 +44,19 @@ function marksOf(data) {
   return [...distinct.values()];
 }
 
-/** The page's address with the values of a mark asked for, or with all others of its attribute. */
+/** The page's address with the values of a mark asked for, no longer where they are, or with all others of its attribute. */
 function narrowed({ mark, kind }, marks, exclude) {
   const url = new URL(location.href);
   url.hash = "";
   url.searchParams.delete("cursor");
   for (const [attribute, values] of Object.entries(mark.narrow)) {
     const now = url.searchParams.getAll(attribute).filter(Boolean);
+    const isAsked = now.length && now.every((one) => values.includes(one));
     const every = marks.filter((one) => one.kind === "node").flatMap((one) => one.mark.narrow?.[attribute] ?? []);
     const others = (now.length ? now : [...new Set(every)]).filter((one) => !values.includes(one));
     url.searchParams.delete(attribute);
     const kept = values.filter((one) => !now.length || now.includes(one));
+    if (isAsked && kind === "node" && !exclude) continue; // taken back
     for (const one of exclude && kind === "node" ? others : kept) url.searchParams.append(attribute, one);
   }
   return url;

@@ -1,10 +1,9 @@
 /* The page: a change of the form asks anew, and what the service answers takes the answer's place. */
 
 import { byId, problemNotice } from "./dom.js";
-import { drawFlow, redrawFlow } from "./flow.js";
-import { Problem } from "./service.js";
+import { watch } from "./live.js";
 
-const PARTS = ["summary", "answer"];
+const PARTS = ["summary", "answer", "flow"];
 let asking = null;
 
 /** What the form asks, without its empty fields, as a query; each value once. */
@@ -22,14 +21,12 @@ async function fetchPage(query, signal) {
     response = await fetch(query ? `/?${query}` : "/", { headers: { Accept: "text/html" }, signal });
   } catch (cause) {
     if (cause.name === "AbortError") throw cause;
-    throw new Problem({
-      title: "The server does not answer", detail: 'Is "sunatlas serve" still running?',
-    });
+    throw Object.assign(cause, { title: "The server does not answer", detail: 'Is "sunatlas serve" still running?' });
   }
   // A refusal is a page, too, with the service's words.
   const page = new DOMParser().parseFromString(await response.text(), "text/html");
   if (page.getElementById("answer")) return page;
-  throw new Problem({ title: response.statusText || "Error", status: response.status, detail: "" });
+  throw Object.assign(new Error(), { title: response.statusText || "Error", status: response.status });
 }
 
 /** Show the answer to a query; the form is replaced where the query did not come from it. */
@@ -54,14 +51,16 @@ async function show(query, { ofForm = false } = {}) {
       }
       listen();
     }
-    for (const id of PARTS) byId(id).replaceChildren(...page.getElementById(id).childNodes);
+    for (const id of PARTS) {
+      byId(id).replaceChildren(...page.getElementById(id).childNodes);
+      watch(byId(id));
+    }
   } catch (problem) {
     if (problem.name === "AbortError") return;
     byId("summary").replaceChildren();
     answer.replaceChildren(problemNotice(problem, () => show(query, { ofForm })));
   }
   answer.removeAttribute("aria-busy");
-  await drawFlow(query, signal);
 }
 
 /** A query in the one order that can be compared. */
@@ -89,26 +88,11 @@ function listen() {
   });
 }
 
-/** Require values of an attribute, or no longer where all of them are required. */
-function toggle(attribute, values) {
-  const query = new URLSearchParams(location.search);
-  const now = query.getAll(attribute);
-  const off = values.every((value) => now.includes(value));
-  query.delete(attribute);
-  query.delete("cursor");
-  const kept = now.filter((value) => !values.includes(value));
-  for (const value of off ? kept : [...kept, ...values]) query.append(attribute, value);
-  ask(query.toString());
-}
-
 listen();
 addEventListener("popstate", () => show(new URLSearchParams(location.search).toString()));
-drawFlow(new URLSearchParams(location.search).toString(), undefined, toggle)
-  .finally(() => { document.documentElement.dataset.live = "true"; });
-
-let width = innerWidth;
-addEventListener("resize", () => {
-  if (innerWidth === width) return; // a phone's bars come and go
-  width = innerWidth;
-  redrawFlow();
+// What a click in the flow asks for is asked without leaving the page.
+addEventListener("figurenarrow", (event) => {
+  event.preventDefault();
+  ask(event.detail.searchParams.toString());
 });
+document.documentElement.dataset.live = "true";

@@ -2,6 +2,8 @@
 
 import dataclasses
 
+import pytest
+
 from registry.designs import gather
 from registry.flows import chart
 from registry.measured_pipelines import Measurements
@@ -100,6 +102,29 @@ def test_nodes_and_links_are_the_cross_analysis_narrowed_to_the_answer(survey: F
         level: sum(not s.of(level) for s in survey.studies.values())
         for level in ("task", "detector", "mask")
     }
+
+
+def test_a_study_is_shared_out_so_that_what_flows_in_flows_out(survey: Facts) -> None:
+    answer = recommend({"detector": ["CMOS"]}, facts=survey)
+    for grouped in (False, True):
+        flow = answer_flow(answer, "fractional", grouped=grouped)
+        whole = answer_flow(answer, grouped=grouped)
+        studies = {study for node in flow.nodes for study in node.studies}
+        for level in flow.levels:
+            assert sum(n.count for n in flow.nodes if n.level == level) == pytest.approx(
+                len(studies)
+            )
+        for node in flow.nodes:
+            into = sum(link.value for link in flow.links if link.target == node.id)
+            out = sum(link.value for link in flow.links if link.source == node.id)
+            ends = (flow.levels[0], flow.levels[-1])
+            assert node.level == ends[0] or into == pytest.approx(node.count)
+            assert node.level == ends[1] or out == pytest.approx(node.count)
+        assert [set(n.studies) for n in flow.nodes] == [set(n.studies) for n in whole.nodes]
+        assert all(n.count == len(n.studies) for n in whole.nodes)
+    families = {n.value for n in whole.nodes if n.level == "model_category"}
+    models = {survey.taxonomy.derived_values("model_category", path[3]) for path in whole.paths}
+    assert families == models
 
 
 def test_an_impossible_question_has_no_flow(survey: Facts) -> None:

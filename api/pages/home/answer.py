@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
@@ -12,13 +13,18 @@ from markupsafe import Markup
 from pydantic import ValidationError
 
 from api.addresses import architecture_page
+from api.figures.architectures import Point, architectures_figure
+from api.figures.catalogue import figure as figure_of
+from api.figures.figure import Figure
+from api.figures.flow_figures import CHAINS, answer_figure
+from api.figures.sunburst import NAME as MODELS
+from api.figures.wording import LEVELS, display_name
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
 from api.pages.editions import edition_shown
 from api.pages.home.question import clauses, form
 from api.pages.numbers import degrees, own_error
-from api.pages.plots.scatter import Point, Scatter
 from api.pages.serving import PageRouter, View
 from api.schema.recommendations import Architecture, Measured, RecommendationRow, Recommendations
 from api.schema.requirements import RequirementsQuery
@@ -31,7 +37,9 @@ from api.service.problems import Problem
 from api.service.refusals import refusal
 from api.web.dependencies import Known
 from registry.answer import Answer
+from registry.flows import Counting
 from registry.requirements import LIMITS, SETTINGS
+from registry.taxonomy import ATTRIBUTES
 
 router = PageRouter()
 
@@ -40,13 +48,28 @@ PAGED = ("limit", "calibrations", "include", "format", "fields", "safe")
 SINGLE = {*LIMITS, *SETTINGS, "mission", "sort", "edition", "cursor"}
 #: What errors are drawn against, and whether more of it is better.
 ACROSS = {"field": ("full field of view, °", True), "poses": ("calibration poses needed", False)}
+SHOWN = {
+    "across": {"field": "Field of view", "poses": "Calibration poses"},
+    "flow": {
+        "answer": "Cross-analysis",
+        **{name: CHAINS[name].title for name in ("error", "performance", "task")},
+        MODELS: "Models (sunburst)",
+    },
+    "detail": {"grouped": "Families", "all": "All values"},
+    "counting": {"studies": "Studies", "fractional": "Fractional"},
+}
+"""What the page shows besides the answer: parameter -> values in words, the usual one first."""
 
 
-@router.page("/", twin="/answer")
+@router.page("/", twin="/answer", figures=True)
 async def answer(known: Known, request: Request) -> View:
     """Render the answer to the requirements in the address, readable without JavaScript."""
     fields = request.query_params.multi_items()
-    across = dict(fields).get("across", "field")
+    given = dict(fields)
+    shown_as = {
+        name: given[name] if given.get(name) in words else next(iter(words))
+        for name, words in SHOWN.items()
+    }
     asked = None
     try:
         asked = _ask(fields)
@@ -55,12 +78,15 @@ async def answer(known: Known, request: Request) -> View:
     except Problem as problem:
         if request.scope["path"] != "/":
             raise
-        parts: dict[str, Any] = {"asked": asked, "across": across, "document": None}
+        parts: dict[str, Any] = {"asked": asked, "shown": shown_as, "document": None}
         parts["form"] = form(known, fields, {})
         view = View("home/answer.html", Document({}), problem=problem.document("/"), **parts)
         view.status_code = problem.status_code
         return view
     document = service.document(found, asked, shown.items, shown.next)
+    flow = _flow(known, asked, found, shown_as, request)
+    scatter, left_out = _scatter(known, found, shown_as["across"])
+    kept = {name: one for name, one in shown_as.items() if one != next(iter(SHOWN[name]))}
     return View(
         "home/answer.html",
         _as_table(document, found),
@@ -71,11 +97,17 @@ async def answer(known: Known, request: Request) -> View:
         asked=asked,
         editions=edition_shown(known, asked.edition, request),
         clauses=dict(clauses(document.requirements)),
-        scatter=_scatter(known, found, across),
-        across=across,
+        figures=(flow, scatter),
+        scatter=scatter,
+        left_out=left_out,
+        flow=flow,
+        shown=shown_as,
+        choices=SHOWN,
+        names=LEVELS,
+        worded=display_name,
         own=lambda measured: _own(known, measured),
         applied=lambda change: "/?" + urlencode(_applied(document, asked, change), doseq=True),
-        going_on=lambda **more: "/?" + urlencode({**_stated(asked), **more}, doseq=True),
+        going_on=lambda **more: "/?" + urlencode({**_stated(asked), **kept, **more}, doseq=True),
         command=_command(asked),
         form=form(known.of(asked.edition), fields, document.requirements),
     )
@@ -85,7 +117,7 @@ def _ask(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
     """Return the requirements among the fields of a query; Problem where they are none."""
     given: dict[str, Any] = {"include": ["calibrations"]}
     for name, value in fields:
-        if name == "across":
+        if name in SHOWN:
             continue
         if name in PAGED:
             raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
@@ -144,8 +176,27 @@ def _own(known: Knowledge, measured: Measured) -> Markup:
     return Markup("<span>{}</span>").format(degrees(measured.own_error_deg))
 
 
-def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
-    """Return the judged errors of the best calibrations of all architectures of an answer."""
+def _flow(
+    known: Knowledge,
+    asked: RequirementsQuery,
+    found: Answer,
+    shown_as: Mapping[str, str],
+    request: Request,
+) -> Figure:
+    """Return the flow that is shown: of the answer, or a figure of the survey with its filters."""
+    facts = known.of(asked.edition).facts
+    page_address = f"/?{request.scope['query_string'].decode('latin-1')}"
+    counting: Counting = "fractional" if shown_as["counting"] == "fractional" else "studies"
+    if shown_as["flow"] == "answer":
+        grouped = shown_as["detail"] == "grouped"
+        return answer_figure(found, facts, page_address, counting, grouped=grouped)
+    where = {name: values for name in ATTRIBUTES if (values := getattr(asked, name))}
+    made = figure_of(shown_as["flow"], facts, where, page_address, counting)
+    return replace(made, name="flow")
+
+
+def _scatter(known: Knowledge, found: Answer, across: str) -> tuple[Figure, list[str]]:
+    """Return the judged errors of the best calibrations of an answer, and who has none to draw."""
     words, more = ACROSS.get(across, ACROSS["field"])
     points: list[Point] = []
     left_out: list[str] = []
@@ -162,7 +213,8 @@ def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
         else:
             left_out.append(f"{one.detector} + {one.mask}")
     up = "error in flight" if found.level == "flight" else "own error"
-    return Scatter(points, up, words, more, "°" if more else "poses", left_out)
+    unit = "°" if more else "poses"
+    return architectures_figure(points, up, words, unit, more_is_better=more), left_out
 
 
 def _judged_deg(measured: Measured, level: str) -> float | None:

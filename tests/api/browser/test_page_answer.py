@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from playwright.sync_api import expect
 
 from api.pages.numbers import degrees
 from tests.api.browser.visiting import Visit, follow, get_json
@@ -26,8 +27,11 @@ def test_with_nothing_asked_there_are_three_ways_to_begin_and_no_winner(wide: Vi
     assert ("built by nobody" in cards[2]) != lowest["built"]
     assert page.locator(".architecture .rank").count() == 0
     assert "no ranking" in page.locator("#answer").inner_text()
-    assert page.locator("svg.scatter .dot").count() > 20
-    assert "error in flight, °" in (page.locator("svg.scatter").text_content() or "")
+    picture = page.locator(".scatter .live-figure")
+    picture.scroll_into_view_if_needed()
+    expect(picture).to_have_attribute("data-live", "true")
+    assert picture.locator(".scatterlayer .point").count() > 20
+    assert "error in flight, °" in (picture.text_content() or "")
     assert wide.names() == [
         f"{a['detector']} + {a['mask']}" for a in answer(wide, "")["architectures"]
     ]

@@ -11,7 +11,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 from urllib.request import urlopen
 
-from playwright.sync_api import ConsoleMessage, Locator, Page
+from playwright.sync_api import ConsoleMessage, Locator, Page, expect
 
 from api.guide import site
 
@@ -50,10 +50,11 @@ class Visit:
         return parse_qs(urlsplit(self.page.url).query)
 
     def flow_nodes(self) -> set[str]:
-        """Ids of the nodes that the diagram shows."""
-        drawn = self.page.locator(".diagram").get_attribute("data-nodes")
-        assert drawn is not None
-        return set(drawn.split("|"))
+        """Labels of the nodes that the live flow shows, with their numbers."""
+        flow = self.page.locator("#flow .live-figure")
+        flow.scroll_into_view_if_needed()
+        expect(flow).to_have_attribute("data-live", "true")
+        return set(self.page.locator("#flow .node-label").all_text_contents())
 
     def names(self) -> list[str]:
         """Architectures in the order of the page."""

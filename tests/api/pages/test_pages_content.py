@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from html import unescape
 
@@ -97,20 +98,22 @@ def test_the_scatter_has_a_point_for_every_judged_error_and_no_other(
     """With a bench, too: errors without one are drawn."""
     for asked in (f"level={level}", f"level={level}&max_error_deg=0.5&bench_deg=0.05"):
         document = atlas.get(f"/v1/recommendations?{asked}&limit=500").json()["architectures"]
-        page = atlas.get(f"/?{asked}").text
-        drawn = re.findall(r'<circle class="dot (\w+)', page)
+        traces = atlas.get(f"/answer.architectures.plotly.json?{asked}").json()["data"]
+        drawn = {trace["name"]: trace["y"] for trace in traces if "text" in trace}
         every = [a["best"]["measured"] for a in document if a["best"] and a["best"]["measured"]]
         places = {(m["field_deg"], m[member]) for m in every if m[member]}
-        assert len(drawn) == sum(bool(m[member]) for m in every) > 5
+        assert sum(map(len, drawn.values())) == sum(bool(m[member]) for m in every) > 5
         # The front: none errs less over a field as wide.
         front = [
             (field, error)
             for field, error in places
             if not any(f >= field and e <= error and (f, e) != (field, error) for f, e in places)
         ]
-        assert drawn.count("pareto") == len(front)
-        titles = re.findall(rf"{words} (\S+°)", "".join(re.findall("<title>(.*?)</title>", page)))
-        assert sorted(titles) == sorted(degrees(m[member]) for m in every if m[member])
+        assert sorted(drawn["Pareto front"]) == sorted(error for _, error in front)
+        shown = sorted(itertools.chain(*drawn.values()))
+        assert shown == sorted(m[member] for m in every if m[member])
+        said = [mark["text"] for trace in traces for mark in trace.get("customdata", ())]
+        assert all(f": {words} " in text for text in said)
 
 
 def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:

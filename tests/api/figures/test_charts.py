@@ -1,0 +1,89 @@
+"""Charts of pages: what is not known leaves a gap, the front is what nothing beats."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from xml.etree import ElementTree as ET
+
+import plotly.graph_objects as go
+import pytest
+
+from api.figures.architectures import Point, architectures_figure, pareto_front
+from api.figures.lines import Line, line_figure
+from api.figures.picture import picture
+from tests.api.conftest import Client
+
+#: One page of every kind that has charts.
+PAGES = (
+    *("/", "/?across=poses", "/datasets/cmos-single-aperture", "/algorithms/tm"),
+    *("/claims/C04", "/architectures/CMOS/Encoded"),
+    "/compare?architecture=CMOS:Encoded&architecture=QPD:Single-Ap.",
+)
+
+
+@pytest.mark.parametrize("nothing", [None, math.nan, math.inf])
+def test_what_is_not_known_leaves_a_gap_in_the_line_and_its_band(nothing: float | None) -> None:
+    points = [(1.0, 2.0), (2.0, 3.0), (3.0, nothing), (4.0, 1.0), (5.0, 2.0)]
+    band = [(x, y, y) for x, y in points]
+    band[3] = (4.0, nothing, 2.0)  # the edge that is known alone bounds nothing
+    found = line_figure("one", "One line", [Line("one", points, band)], "x", "y")
+    *bands, line = found.plotly["data"]
+    assert [max(one["x"]) for one in bands] == [2.0, 5.0]
+    assert line["y"] == [2.0, 3.0, None, 1.0, 2.0]
+    assert [row["one"] for row in found.rows] == line["y"]
+    assert [row["x"] for row in found.rows] == line["x"]
+    drawn = picture(found.plotly, found.title)
+    assert "nan" not in drawn.lower()
+    assert ET.fromstring(drawn) is not None
+    empty = line_figure("none", "Nothing", [Line("none", [(1.0, nothing)])], "x", "y")
+    assert empty.rows == ()
+
+
+def test_an_axis_is_logarithmic_where_every_value_is_positive() -> None:
+    for low, kind in ((0.1, "log"), (0.0, None)):
+        found = line_figure("a", "A", [Line("a", [(1.0, low), (10.0, 2.0)])], "x", "y")
+        assert found.plotly["layout"]["yaxis"].get("type") == kind
+        assert found.plotly["layout"]["xaxis"].get("type") is None
+
+
+def test_no_point_beats_one_of_the_front_and_one_beats_every_other() -> None:
+    places = [(60, 0.1), (90, 0.1), (120, 0.3), (30, 0.05), (120, 0.2), (360, 1.0), (90, 0.5)]
+    points = [Point(str(at), "/", x, y, None) for at, (x, y) in enumerate(places)]
+    front = pareto_front(points, more_is_better=True)
+
+    def beats(a: Point, b: Point) -> bool:
+        no_worse = a.across >= b.across and a.error_deg <= b.error_deg
+        return no_worse and (a.across, a.error_deg) != (b.across, b.error_deg)
+
+    for point in points:
+        assert (point in front) == (not any(beats(other, point) for other in points))
+    made = architectures_figure(points, "error", "field", "°", more_is_better=True)
+    go.Figure(json.loads(json.dumps(made.plotly)))
+    assert [row["front"] for row in made.rows] == [point in front for point in points]
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_every_chart_of_a_page_can_be_had_and_draws_nothing_unknown(
+    atlas: Client, path: str
+) -> None:
+    """Of a filter in the dark nothing is known: its points stood at the picture's edge."""
+    page = atlas.get(path, accept="text/html").text
+    addresses = re.findall(r'data-spec="([^"]*)"', page)
+    assert addresses
+    for address in addresses:
+        given = atlas.get(address.replace("&amp;", "&"))
+        assert given.status_code == 200, address
+        read = go.Figure(given.json())
+        assert read.data
+        drawn = atlas.get(address.replace("&amp;", "&").replace(".plotly.json", ".svg"))
+        assert drawn.headers["content-type"].startswith("image/svg+xml")
+        assert "nan" not in re.sub(r"<(text|desc|title)\b.*?</\1>", "", drawn.text).lower()
+
+
+def test_a_figure_that_a_page_does_not_have_is_refused(atlas: Client) -> None:
+    refused = atlas.get("/claims/C04.nothing.svg")
+    assert refused.status_code == 404
+    (error,) = refused.json()["errors"]
+    assert (error["parameter"], error["expected"]) == ("figure", "trials")
