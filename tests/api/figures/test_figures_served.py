@@ -52,6 +52,12 @@ def marks(part: Any) -> list[tuple[str, str]]:
     return [mark for one in inside for mark in marks(one)]
 
 
+def test_the_list_has_a_small_picture_of_every_figure(atlas: Client) -> None:
+    page = atlas.get("/figures", accept=HTML).text
+    shown = re.findall(r'<img class="thumbnail on-light" src="([^"]*)"', page)
+    assert shown == [f"{path}.svg" for path in PATHS]
+
+
 def test_plotly_is_served_from_here_packed_and_under_a_name_of_its_content(atlas: Client) -> None:
     page = atlas.get("/figures/error", accept=HTML).text
     (address,) = set(re.findall(r'data-plotly="([^"]*)"', page))
