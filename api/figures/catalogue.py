@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated
 
-from api.figures import coordinates, matrix, publications, sunburst
+from api.figures import evidence_matrix, publication_bars, sensor_lines, sunburst
 from api.figures.addresses import Addresses
-from api.figures.coordinates import coordinates_figure
+from api.figures.evidence_matrix import matrix_figure
 from api.figures.figure import Figure
 from api.figures.flow_figures import CHAINS, flow_figure
-from api.figures.matrix import matrix_figure
-from api.figures.publications import publications_figure
+from api.figures.publication_bars import publications_figure
+from api.figures.sensor_lines import coordinates_figure
 from api.figures.sunburst import sunburst_figure
 from api.schema.figures import COLUMNS, ROWS
 from api.schema.parameters import OneOf
@@ -24,10 +24,10 @@ from registry.taxonomy import unknown_name
 
 _OTHERS = {
     sunburst.NAME: (sunburst_figure, sunburst.TITLE, sunburst.CAPTION),
-    publications.NAME: (publications_figure, publications.TITLE, publications.CAPTION),
-    coordinates.NAME: (coordinates_figure, coordinates.TITLE, coordinates.CAPTION),
+    publication_bars.NAME: (publications_figure, publication_bars.TITLE, publication_bars.CAPTION),
+    sensor_lines.NAME: (coordinates_figure, sensor_lines.TITLE, sensor_lines.CAPTION),
 }
-MATRIX = matrix.NAME
+MATRIX = evidence_matrix.NAME
 
 TITLES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -42,8 +42,8 @@ LEVELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         **{name: chain.levels for name, chain in CHAINS.items()},
         sunburst.NAME: sunburst.LEVELS,
-        publications.NAME: ("year",),
-        coordinates.NAME: ("year", "detector", "mask", "accuracy"),
+        publication_bars.NAME: ("year",),
+        sensor_lines.NAME: ("year", "detector", "mask", "accuracy"),
     }
 )
 """What each figure shows of a study."""
@@ -94,6 +94,6 @@ def evidence_map(
     Without `evidence` nothing counts as measured.
     """
     wanted = where or {}
-    addresses = Addresses(facts, page or f"/figures/{matrix.NAME}", wanted)
+    addresses = Addresses(facts, page or f"/figures/{evidence_matrix.NAME}", wanted)
     known = Evidence(catalogue(), (), {}) if evidence is None else evidence
     return matrix_figure(facts, addresses, wanted, known, rows=rows, columns=columns)

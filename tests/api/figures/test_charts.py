@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Callable
 from xml.etree import ElementTree as ET
 
 import plotly.graph_objects as go
 import pytest
 
+from api import figures
 from api.figures.architectures import Point, architectures_figure, pareto_front
+from api.figures.catalogue import MATRIX
+from api.figures.figure import Figure
 from api.figures.lines import Line, line_figure
 from api.figures.picture import picture
 from tests.api.conftest import Client
@@ -87,3 +91,25 @@ def test_a_figure_that_a_page_does_not_have_is_refused(atlas: Client) -> None:
     assert refused.status_code == 404
     (error,) = refused.json()["errors"]
     assert (error["parameter"], error["expected"]) == ("figure", "trials")
+
+
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda: figures.flow("error", detector="CMOS"), "error"),
+        (figures.models, "models"),
+        (figures.publications, "publications"),
+        (figures.coordinates, "coordinates"),
+        (lambda: figures.matrix("task", "mask"), MATRIX),
+    ],
+)
+def test_a_notebook_shows_every_figure_with_its_title(
+    make: Callable[[], Figure], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[go.Figure] = []
+    monkeypatch.setattr(go.Figure, "show", lambda figure, renderer: shown.append(figure))
+    found = make()
+    found.show()
+    assert found.name == name
+    assert [one.layout.title.text for one in shown] == [found.title]
+    assert len(shown[0].data) == len(found.plotly["data"]) > 0
