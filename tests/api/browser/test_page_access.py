@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib.resources import files
 
 import pytest
+from playwright.sync_api import expect
 
 from tests.api.browser.visiting import Visit, build_guide
 from tests.api.pages.addresses import BESIDE, KINDS
@@ -29,6 +30,9 @@ def test_no_page_has_a_serious_issue(visit: str, kind: str, request: pytest.Fixt
     page.goto(visited.address + PLACES[kind])
     if kind.startswith("answer"):
         page.wait_for_function("() => document.documentElement.dataset.live")
+    for figure in page.locator(".live-figure").all():
+        figure.scroll_into_view_if_needed()
+        expect(figure).to_have_attribute("data-live", "true")
     page.evaluate(AXE)
     result = page.evaluate("() => axe.run(document, {resultTypes: ['violations']})")
     found = [
