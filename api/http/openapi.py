@@ -13,7 +13,7 @@ from api.schema.service import ProblemDocument
 from api.service.problems import MEDIA_TYPE
 from api.service.refusals import asked_models, of_list, schemas
 from api.web.answers import Answer, AnswerRoute
-from api.web.negotiation import CSL, JSON
+from api.web.negotiation import CSL, JSON, PLOTLY
 
 REFUSALS = {
     400: "Unknown parameter, contradictory parameters, or malformed request.",
@@ -100,6 +100,8 @@ def _complete(operation: dict[str, Any], route: APIRoute) -> None:
     if issubclass(kind, Answer):
         offered = {wanted: {"schema": {"type": "string"}} for wanted in kind.media_types}
         success["content"] = {**offered, **success["content"]}
+        if PLOTLY in offered:
+            success["content"][PLOTLY] = {"schema": {"type": "object"}}
         if CSL in offered:
             success["content"][CSL] = {"schema": {"type": "array", "items": {"type": "object"}}}
     same = {"304": _NOT_MODIFIED} if "body" not in declared else {}
