@@ -162,6 +162,7 @@ const seen = new IntersectionObserver((entries) => {
     if (!isIntersecting) continue;
     seen.unobserve(target);
     draw(target).catch((cause) => { // the picture stays
+      target.querySelector(".figure-plot")?.remove();
       for (const image of target.querySelectorAll("img")) image.hidden = false;
       console.error(cause);
     });

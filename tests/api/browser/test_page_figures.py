@@ -78,6 +78,32 @@ def test_marks_are_gone_through_by_arrow_keys_and_lead_to_their_studies(wide: Vi
     page.wait_for_url("**/studies?detector=PD&mask=Single-Ap.")
 
 
+def test_a_tap_is_a_click(browser: Browser, address: str) -> None:
+    context = browser.new_context(
+        viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
+    )
+    visit = Visit(context.new_page(), address)
+    page = live(visit, f"/figures/{MATRIX}")
+    page.locator(".live-figure").scroll_into_view_if_needed()
+    box = page.locator(".nsewdrag").bounding_box()
+    assert box is not None
+    page.touchscreen.tap(box["x"] + 0.05 * box["width"], box["y"] + 0.05 * box["height"])
+    page.wait_for_url("**/studies?detector=PD&mask=Single-Ap.")
+    page = live(visit, "/figures/error")
+    page.locator(".sankey-node", has_text="CMOS").locator("rect").first.tap(force=True)
+    page.wait_for_url("**/figures/error?detector=CMOS")
+    context.close()
+
+
+def test_a_picture_stays_where_plotly_does_not_come(wide: Visit) -> None:
+    page = wide.page
+    page.route("**/plotly-*.js", lambda route: route.abort())
+    page.goto(wide.address + "/figures/error")
+    page.wait_for_event("console", lambda message: message.type == "error")
+    expect(page.locator(".live-figure img.on-light")).to_be_visible()
+    assert page.locator(".figure-plot").count() == 0
+
+
 def test_a_cell_without_a_study_leads_to_what_is_measured(wide: Visit) -> None:
     page = live(wide, f"/figures/{MATRIX}")
     box = page.locator(".nsewdrag").bounding_box()
