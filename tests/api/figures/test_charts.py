@@ -66,6 +66,12 @@ def test_no_point_beats_one_of_the_front_and_one_beats_every_other() -> None:
     made = architectures_figure(points, "error", "field", "°", more_is_better=True)
     go.Figure(json.loads(json.dumps(made.plotly)))
     assert [row["front"] for row in made.rows] == [point in front for point in points]
+    drawn = {
+        (name, x, y)
+        for trace in made.plotly["data"]
+        for name, x, y in zip(trace.get("text", ()), trace["x"], trace["y"], strict=False)
+    }
+    assert drawn == {(r["architecture"], r["across"], r["error_deg"]) for r in made.rows}
 
 
 @pytest.mark.parametrize("path", PAGES)
