@@ -24,6 +24,7 @@ from api.schema import datasets as of_datasets
 from api.schema import directions as of_directions
 from api.schema import figures as of_figures
 from api.schema import flows as of_flows
+from api.schema import measured_figures as of_measured
 from api.schema import recommendations as of_recommendations
 from api.schema import samples as of_samples
 from api.schema import scores as of_scores
@@ -40,12 +41,15 @@ from api.service import (
     datasets,
     directions,
     figures,
+    gap,
     leaderboard,
     recommendations,
+    robustness,
     scores,
     search,
     studies,
     taxonomy,
+    trade_off,
 )
 from api.service.documents import Document
 from api.web.answers import Answer, AnswerRoute, CitedAnswer, FigureAnswer
@@ -96,6 +100,27 @@ TABLES = (
         figures.matrix,
         of_figures.Figure,
         "Evidence map: studies by two attributes",
+        FigureAnswer,
+    ),
+    Table(
+        "/figures/gap",
+        gap.gap,
+        of_measured.Gap,
+        "Claimed, simulated and possible errors",
+        FigureAnswer,
+    ),
+    Table(
+        "/figures/trade-off",
+        trade_off.trade_off,
+        of_measured.TradeOff,
+        "Error against cost",
+        FigureAnswer,
+    ),
+    Table(
+        "/figures/robustness",
+        robustness.robustness,
+        of_measured.Robustness,
+        "Errors by condition",
         FigureAnswer,
     ),
     Table(

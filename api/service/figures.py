@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from api.figures.catalogue import LEVELS, TITLES, FigureName, evidence_map
 from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure
 from api.schema.figures import FigureQuery, ListedFigure, MatrixQuery
+from api.schema.measured_figures import MeasuredFigure
 from api.schema.table import columns_of
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
@@ -44,3 +47,15 @@ def figure(known: Knowledge, figure: FigureName, query: FigureQuery) -> Document
 def document_of(found: Figure) -> Document:
     """Return a figure as a document."""
     return Document(found.to_dict(), found.columns, lambda: found.rows, plotly=found.plotly)
+
+
+def measured_document(found: Figure, model: type[MeasuredFigure], **more: Any) -> Document:
+    """Return a figure of measurements as a document; its rows are called items."""
+    made: dict[str, Any] = {
+        "figure": found.name,
+        **{name: getattr(found, name) for name in ("title", "caption", "text", "options")},
+        "items": found.rows,
+        **more,
+    }
+    document = model(**made).model_dump()
+    return Document(document, found.columns, lambda: found.rows, plotly=found.plotly)

@@ -30,6 +30,9 @@ ASKED = (
         *(f"/v1/leaderboard/qpd-single-aperture?{q}" for q in ("field_deg=30", "max_error_deg=1")),
     ),
     ("/v1/claims", "/v1/claims?q=zzz"),
+    ("/v1/figures/gap", "/v1/figures/gap?detector=OI&mask=Lens"),
+    ("/v1/figures/trade-off", "/v1/figures/trade-off?across=mass&detector=OI"),
+    ("/v1/figures/robustness", "/v1/figures/robustness?compare=mirror&compare=bctm"),
     ("/v1/search?q=centroid", "/v1/search?q=zzzzzzzz"),
 )
 LISTS = {
