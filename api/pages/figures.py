@@ -13,6 +13,7 @@ from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure, Row
 from api.figures.statements import number_of_studies, statements
 from api.pages.editions import edition_shown
+from api.pages.measured_figures import LISTED
 from api.pages.numbers import degrees, kind_said, own_error, wide
 from api.pages.serving import DRAWN, PageRouter, View
 from api.schema.figures import FigureQuery, MatrixQuery
@@ -41,6 +42,7 @@ async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -
         "figures.html",
         answer,
         matrix=MATRIX,
+        measured=LISTED,
         counted=number_of_studies(),
         unmapped=known.editions[1].studies,
     )

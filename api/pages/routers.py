@@ -14,6 +14,7 @@ from api.pages import (
     figures,
     glossary_page,
     leaderboard,
+    measured_figures,
     search,
     sensors,
     study,
@@ -25,7 +26,8 @@ ROUTERS = (
         kind.router
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, directions, compare, search),
-            *(glossary_page, leaderboard, bibliography, calibrate, experiments, figures),
+            *(glossary_page, leaderboard, bibliography, calibrate, experiments),
+            *(measured_figures, figures),
         )
     ),
     experiments.pictures,

@@ -9,6 +9,7 @@ from fastapi import Path, Query, Request
 
 from api.pages import boards
 from api.pages.editions import edition_shown
+from api.pages.measured_figures import gap_section
 from api.pages.serving import PageRouter, View
 from api.schema import words
 from api.schema.base import OfEdition
@@ -107,6 +108,7 @@ def _one(
         Document(document, ARCHITECTURE_COLUMNS, lambda: rows),
         hardware=hardware,
         editions=shown,
+        **gap_section(known, {attribute: [value], "edition": query.edition}),
     )
 
 
@@ -180,4 +182,5 @@ async def architecture(
         cards=cards,
         figures=(field,),
         field=field,
+        **gap_section(known, {name: given[name] for name in ("detector", "mask", "edition")}),
     )

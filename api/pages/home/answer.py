@@ -24,6 +24,7 @@ from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
 from api.pages.editions import edition_shown
 from api.pages.home.question import clauses, form
+from api.pages.measured_figures import gap_section
 from api.pages.numbers import degrees, own_error
 from api.pages.serving import PageRouter, View
 from api.schema.recommendations import Architecture, Measured, RecommendationRow, Recommendations
@@ -46,6 +47,8 @@ router = PageRouter()
 #: Names that the service takes and the page settles itself.
 PAGED = ("limit", "calibrations", "include", "format", "fields", "safe")
 SINGLE = {*LIMITS, *SETTINGS, "mission", "sort", "edition", "cursor"}
+#: What the figure of the gap can be asked, too.
+GAP = {"detector", "mask", "task", "error", "level", "edition"}
 #: What errors are drawn against, and whether more of it is better.
 ACROSS = {"field": ("full field of view, °", True), "poses": ("calibration poses needed", False)}
 SHOWN = {
@@ -105,6 +108,7 @@ async def answer(known: Known, request: Request) -> View:
         choices=SHOWN,
         names=LEVELS,
         worded=display_name,
+        **gap_section(known, asked.model_dump(include=GAP, exclude_defaults=True)),
         own=lambda measured: _own(known, measured),
         applied=lambda change: "/?" + urlencode(_applied(document, asked, change), doseq=True),
         going_on=lambda **more: "/?" + urlencode({**_stated(asked), **kept, **more}, doseq=True),

@@ -11,6 +11,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from api.figures.catalogue import TITLES
+from api.pages.measured_figures import LISTED
 from tests.api.conftest import Client
 
 PLOTLY = "application/vnd.plotly.v1+json"
@@ -55,7 +56,7 @@ def marks(part: Any) -> list[tuple[str, str]]:
 def test_the_list_has_a_small_picture_of_every_figure(atlas: Client) -> None:
     page = atlas.get("/figures", accept=HTML).text
     shown = re.findall(r'<img class="thumbnail on-light" src="([^"]*)"', page)
-    assert shown == [f"{path}.svg" for path in PATHS]
+    assert shown == [f"{path}.svg" for path in (*PATHS, *(address for address, *_ in LISTED))]
 
 
 def test_plotly_is_served_from_here_packed_and_under_a_name_of_its_content(atlas: Client) -> None:

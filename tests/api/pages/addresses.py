@@ -42,6 +42,11 @@ KINDS = {
     **{f"figure {name}": f"/figures/{name}" for name in TITLES},
     "figure narrowed": f"/figures/{next(iter(TITLES))}?detector=CMOS",
     "evidence map": f"/figures/{MATRIX}",
+    "gap": "/figures/gap",
+    "trade-off": "/figures/trade-off?across=latency&level=own&dataset=ccd-slit"
+    "&select=ccd-slit:slit-image:slit",
+    "robustness": "/figures/robustness?hazard=saturation&hazard=glare",
+    "pairwise": "/figures/robustness?compare=mirror&compare=bctm",
     "refused": "/studies/Nobody1900",
     "nowhere": "/nowhere",
 }
