@@ -46,6 +46,7 @@ COMMANDS: dict[str, str] = {
     "rank": "Check and measure an algorithm, and show its rank.",
     "leaderboard": "Show the leaderboard, update it or check it.",
     "compare": "Compare architectures, or masks at equal height.",
+    "figures": "Print errors claimed, simulated and possible.",
     "curves": "Show how many calibration poses pipelines need.",
     "assess": "Compare the survey's scores of extractors with ours.",
     "claims": "Show claims of the survey, with verdicts.",
