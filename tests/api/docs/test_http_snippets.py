@@ -49,3 +49,16 @@ def test_a_long_list_is_walked_to_its_end(atlas, address):
     total = atlas.get("/v1/results?condition=nominal&limit=1").json()["total"]
     assert len(scores) == total > 500
     assert not scores.duplicated(["dataset", "extractor", "model"]).any()
+
+
+def test_the_figures_of_measurements_have_the_numbers_of_their_documents(atlas, address, capsys):
+    found = run(SNIPPETS[3], address)
+    name, over, wins, losses, ratio = capsys.readouterr().out.split()
+    cells = atlas.get("/v1/figures/robustness?hazard=saturation&hazard=glare").json()["items"]
+    first = next(cell for cell in cells if cell["condition"] == "worst")
+    assert (name, float(over)) == (first["name"], first["over_bound"])
+    duels = atlas.get("/v1/figures/robustness?compare=mirror&compare=bctm").json()["duels"]
+    outcomes = [duel["outcome"] for duel in duels]
+    assert (int(wins), int(losses)) == (outcomes.count("win"), outcomes.count("loss"))
+    assert float(ratio) == found["duel"]["ratio"]
+    assert len(found["drawn"]["layout"]["yaxis"]["categoryarray"]) > len(found["best"]) > 5
