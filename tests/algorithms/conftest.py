@@ -32,6 +32,7 @@ from designs import (  # noqa: E402 - of the suite's folder
     FACES,
     HOLES,
     LINE_PIXELS,
+    LISTS,
     MULTI_SPOT,
     OWN_DESIGN,
     PYRAMID,
@@ -216,6 +217,12 @@ def _dial_signals(geometry: SensorGeometry, tangents: Floats) -> Floats:
 def _spot_lists(geometry: SensorGeometry, tangents: Floats) -> Floats:
     """Spots of a mask well on its detector, for each of the Sun's tangents (x, y)."""
     middle, holes = np.array(geometry.centre_px), np.array(geometry.apertures)[:, :2]
+    if np.ptp(holes, axis=0).max() < geometry.pixel_pitch_mm * middle.min():  # all seen at once
+        spots = (
+            middle
+            + (holes + geometry.focal_length_mm * tangents[:, None]) / geometry.pixel_pitch_mm
+        )
+        return np.dstack([spots, np.full(spots.shape[:2], 1000.0)]).reshape(len(spots), -1)
     lists = np.zeros((len(tangents), list_length(geometry, "suite"), 3))
     for row, tangent in zip(lists, tangents, strict=True):
         spots = middle + (holes + geometry.focal_length_mm * tangent) / geometry.pixel_pitch_mm
@@ -255,7 +262,7 @@ def observations_for(geometry: SensorGeometry) -> Callable[[Any], NDArray[Any]]:
     def make(extractor: Any) -> NDArray[Any]:
         if extractor.about.name == "tm":  # its template is the sensor's aperture
             return _squares(geometry)
-        if extractor.about.name in MULTI_SPOT | {"spot-list"}:
+        if extractor.about.name in MULTI_SPOT | LISTS:
             return _many_spots(geometry)
         if make_own := OWN_SAMPLES.get(
             extractor.about.name, OWN_SAMPLES.get(extractor.about.observation)

@@ -41,7 +41,10 @@ PYRAMIDS = {
     "pyramidal-constant",
     "temperature",
 }
-MULTI_SPOT = {"mcam", "fmms", "feic", "weighted-spots"}
+MULTI_SPOT = {"mcam", "fmms", "feic", "weighted-spots", "windowed-array"}
+#: A design of which a frame shows some holes; methods that list them.
+_LISTED = {"centre_px": (22.5, 19.5), "focal_length_mm": 0.5, "aperture_width_mm": 0.05}
+LISTS = {"spot-list", "windowed-list"}
 #: Fields in which the sensor differs that one implementation is made for.
 OWN_DESIGN = {
     "linear-phase-frame": {"aperture_width_mm": 0.06, "focal_length_mm": 0.5},  # as its samples
@@ -69,8 +72,8 @@ OWN_DESIGN = {
         "slits": ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1)),
     },
     "camera": {"lens_distortion": (-0.1, 0.02)},
-    "spot-list": {"centre_px": (22.5, 19.5), "focal_length_mm": 0.5, "aperture_width_mm": 0.05}
-    | {"apertures": WIDE_HOLES},
+    **{name: _LISTED | {"apertures": WIDE_HOLES} for name in LISTS},
+    "spot-array": {"apertures": HOLES},
     **{
         name: {
             "focal_length_mm": 1.0,
@@ -83,5 +86,6 @@ OWN_DESIGN = {
         for name, places in PERIODIC_SLITS.items()
     },
     "coded-spacing": {"centre_px": (49.5, 49.5), "apertures": CODED},
+    "coded-places": {"centre_px": (49.5, 49.5), "apertures": CODED},
     "coded-correlation": {"centre_px": (49.5, 49.5), "apertures": CODED},
 }
