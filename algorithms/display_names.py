@@ -24,6 +24,7 @@ DISPLAY_NAMES: Mapping[str, str] = {
     "hough-circle": "Circle Hough transform",
     "hough-lines": "Line Hough transform of the blooming line",
     "ifm": "Filtered centroid",
+    "line-windows": "Windowed lines of an L",
     "linear-phase-frame": "Linear phase of a spot",
     "mcam": "Mean of many centroids",
     "mirror": "Mirror registration",

@@ -178,6 +178,19 @@ def _blooming_suns(count: int = 7) -> NDArray[np.uint8]:
     return (np.minimum(frames, 240) + rng.integers(0, 6, frames.shape)).astype(np.uint8)
 
 
+def _lines(count: int = 7) -> NDArray[np.uint8]:
+    """Noisy L of two lines eight pixels wide, whole numbers that every dtype holds."""
+    rng = np.random.default_rng(20)
+    y, x = np.mgrid[:60, :64]
+    frames = rng.integers(0, 6, (count, 60, 64)).astype(np.uint8)
+    for frame, (cx, cy) in zip(frames, rng.uniform(11.0, 15.0, (count, 2)), strict=True):
+        upright = (y > cy + 12) & (y < cy + 38)
+        flat = (x > cx + 12) & (x < cx + 38)
+        lit = upright / (1 + np.exp(2 * (np.abs(x - cx) - 4)))
+        frame[:] += (200 * (lit + flat / (1 + np.exp(2 * (np.abs(y - cy) - 4))))).astype(np.uint8)
+    return frames
+
+
 def _spikes(count: int = 7) -> NDArray[np.uint8]:
     """First events of a spot five pixels wide, whole numbers that every dtype holds."""
     rng = np.random.default_rng(18)
@@ -249,6 +262,7 @@ def _ruled(geometry: SensorGeometry, tangents: Floats) -> Floats:
 OWN_SAMPLES: dict[str, Callable[[], NDArray[Any]]] = {
     "bscm": _black_suns,
     "hough-lines": _blooming_suns,
+    "line-windows": _lines,
     Observation.FRAMES: _spots,
     Observation.PROFILES: _profiles,
     Observation.EVENTS: _spikes,

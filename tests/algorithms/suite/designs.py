@@ -73,6 +73,7 @@ OWN_DESIGN = {
     },
     "camera": {"lens_distortion": (-0.1, 0.02)},
     **{name: _LISTED | {"apertures": WIDE_HOLES} for name in LISTS},
+    "line-windows": {"line_axes": ("x", "y"), "slits": ((0.0, 0.0, 0.08),)},
     "spot-array": {"apertures": HOLES},
     **{
         name: {
