@@ -108,6 +108,7 @@ DISPLAY_NAMES: Mapping[str, str] = {
     "solar-panel": "Sum of panel normals",
     "spot-array": "Array of apertures with learned places",
     "spm": "Standard projection",
+    "sure-faces": "Assembly calibration of faces without doubtful answers",
     "trig": "Trigonometric fit",
     "trig-averaged": "Averaged trigonometric fit",
     "unscented-kalman": "Unscented Kalman filter",

@@ -39,6 +39,7 @@ PYRAMIDS = {
     "panoramic-temperature",
     "pyramidal",
     "pyramidal-constant",
+    "sure-faces",
     "temperature",
 }
 MULTI_SPOT = {"mcam", "fmms", "feic", "weighted-spots", "windowed-array"}
