@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import quote, urljoin
+from urllib.parse import quote
 
 from api.metadata.citation import persistent
 from api.metadata.croissant import CONFORMS_TO
@@ -53,7 +53,7 @@ class Link:
     def to_dict(self, base: str) -> dict[str, str]:
         """Return the link as a link set has it, its address made whole."""
         return {
-            "href": urljoin(base, self.target),
+            "href": _whole(base, self.target),
             **({"type": self.media_type} if self.media_type else {}),
             **({"profile": self.profile} if self.profile else {}),
         }
@@ -115,7 +115,7 @@ class LandingPage:
             *((item.target, self.links_of_content()) for item in self.items),
             *((about.target, self.links_of_metadata()) for about in self.metadata),
         ]
-        return {"linkset": [_context(urljoin(base, at), links, base) for at, links in anchors]}
+        return {"linkset": [_context(_whole(base, at), links, base) for at, links in anchors]}
 
     def _terms(self) -> Iterator[Link]:
         if self.identifier:
@@ -228,6 +228,11 @@ def landing_of_atlas(who: Identity) -> LandingPage:
 def authors_of(who: Identity) -> tuple[str, ...]:
     """Return the addresses of the authors that have one, an ORCID iD."""
     return tuple(f"https://orcid.org/{author.orcid}" for author in who.authors if author.orcid)
+
+
+def _whole(base: str, target: str) -> str:
+    """Return an address; a path stands below the service's, which may have a prefix."""
+    return base.rstrip("/") + target if target.startswith("/") else target
 
 
 def _context(anchor: str, links: Sequence[Link], base: str) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from api.http.openapi import describe
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
 from api.server.connections import FewAtOnce
+from api.server.prefix import UnderPrefix
 from api.service.knowledge import Knowledge
 from api.web.middleware import EveryResponse
 from api.web.negotiation import PARQUET
@@ -69,6 +70,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     for router in ROUTERS:
         app.include_router(router)
     handlers.install(app, ROUTES)
+    app.add_middleware(UnderPrefix)
     packed = (*DEFAULT_EXCLUDED_CONTENT_TYPES, PARQUET)
     app.add_middleware(
         GZipMiddleware, minimum_size=512, compresslevel=6, exclude_content_types=packed

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 
-from fastapi import FastAPI
-
 from api.server.app import create_app
+from api.server.prefix import ForwardedPrefix
 from api.service.knowledge import Knowledge
 from benchmark.processes import end_in_time, take_time_to_end, work_for
 
@@ -14,15 +13,19 @@ from benchmark.processes import end_in_time, take_time_to_end, work_for
 _ANSWERS_S = 4.0
 
 
-def application(*, loaded: bool = False) -> FastAPI:
-    """Make the service; `loaded` loads what is known at once, not at start-up."""
+def application(*, loaded: bool = False) -> ForwardedPrefix:
+    """Make the service; `loaded` loads what is known at once, not at start-up.
+
+    It trusts the proxies that Uvicorn would (`FORWARDED_ALLOW_IPS`).
+    """
     known = Knowledge()
     if loaded:
         known.load_all()
-    return create_app(known)
+    trusted = os.environ.get("FORWARDED_ALLOW_IPS", "127.0.0.1,::1")
+    return ForwardedPrefix(create_app(known), trusted)  # type: ignore[arg-type]
 
 
-def application_of_worker() -> FastAPI:
+def application_of_worker() -> ForwardedPrefix:
     """Make the service in one of several processes, which a signal ends when it has answered.
 
     It ends with the process that started it, too, which may have had no time to end it.

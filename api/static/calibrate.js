@@ -1,6 +1,6 @@
 /* The form of a calibration: columns are shown and can be corrected, the report stands below the form. */
 
-import { byId, h } from "./dom.js";
+import { byId, h, ROOT } from "./dom.js";
 
 const form = byId("calibrate");
 const choices = JSON.parse(byId("choices").textContent);
@@ -111,7 +111,7 @@ async function preview() {
   const sent = new FormData();
   sent.append("file", file);
   try {
-    const answer = await fetch("/v1/calibrations/preview", { method: "POST", body: sent, signal: asking.signal });
+    const answer = await fetch(`${ROOT}/v1/calibrations/preview`, { method: "POST", body: sent, signal: asking.signal });
     const found = await answer.json();
     if (answer.ok) {
       config.value = found.config;
@@ -137,7 +137,7 @@ async function calibrate(event) {
   const tick = () => { byId("progress").textContent = `Calibrating, ${Math.round((Date.now() - started) / 1000)} s …${said}`; };
   /** Ask how many calibrations come before this one, which waits for its turn. */
   const ask = async () => {
-    const place = await (await fetch(`/v1/calibrations/waiting/${ticket}`)).json();
+    const place = await (await fetch(`${ROOT}/v1/calibrations/waiting/${ticket}`)).json();
     said = place.before > 0 ? ` ${place.before} in front, about ${place.wait_s} s` : "";
   };
   for (const button of buttons) button.disabled = true;
@@ -147,7 +147,7 @@ async function calibrate(event) {
   const clock = setInterval(tick, 1000);
   const asked = setInterval(() => ask().catch(() => {}), 3000);
   try {
-    const answer = await fetch("/calibrate", { method: "POST", body: sent, headers: { Accept: "text/html" } });
+    const answer = await fetch(`${ROOT}/calibrate`, { method: "POST", body: sent, headers: { Accept: "text/html" } });
     const page = new DOMParser().parseFromString(await answer.text(), "text/html");
     byId("problem").replaceChildren(...page.getElementById("problem").childNodes);
     if (answer.ok) show(page.getElementById("result"));

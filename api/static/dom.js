@@ -17,6 +17,9 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** The path of the service without its last slash: "" or the prefix that a proxy gives it. */
+export const ROOT = new URL("..", import.meta.url).pathname.slice(0, -1);
+
 export const byId = (id) => document.getElementById(id);
 
 /** A command or address to copy. */

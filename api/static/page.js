@@ -1,6 +1,6 @@
 /* The page: a change of the form asks anew, and what the service answers takes the answer's place. */
 
-import { byId, problemNotice } from "./dom.js";
+import { byId, problemNotice, ROOT } from "./dom.js";
 import { watch } from "./live.js";
 
 const PARTS = ["summary", "answer", "flow"];
@@ -18,7 +18,7 @@ function asked() {
 async function fetchPage(query, signal) {
   let response;
   try {
-    response = await fetch(query ? `/?${query}` : "/", { headers: { Accept: "text/html" }, signal });
+    response = await fetch(ROOT + (query ? `/?${query}` : "/"), { headers: { Accept: "text/html" }, signal });
   } catch (cause) {
     if (cause.name === "AbortError") throw cause;
     throw Object.assign(cause, { title: "The server does not answer", detail: 'Is "sunatlas serve" still running?' });
@@ -73,7 +73,7 @@ function sorted(query) {
 /** Ask a query and keep it in the address, so that Back leads here. */
 function ask(query, settings) {
   if (sorted(query) === sorted(location.search)) return;
-  history.pushState(null, "", query ? `/?${query}` : "/");
+  history.pushState(null, "", ROOT + (query ? `/?${query}` : "/"));
   show(query, settings);
 }
 

@@ -1,6 +1,6 @@
 /* The API reference: Swagger UI, served from here, on the description of the service. */
 SwaggerUIBundle({
-  url: "/openapi.json",
+  url: "openapi.json",
   dom_id: "#reference",
   deepLinking: true,
   defaultModelsExpandDepth: -1,

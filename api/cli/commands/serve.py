@@ -16,6 +16,7 @@ from uvicorn.config import LOGGING_CONFIG
 from uvicorn.supervisors import Multiprocess
 
 from api.server import serving
+from api.server.prefix import PREFIX
 from api.service import calibrations
 from benchmark.processes import take_time_to_end
 from files.atomic import sweep, temporary_directory
@@ -25,6 +26,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 #: Of Uvicorn, with bounds for each client; a proxy knows them better (deploy/Caddyfile).
 _OPTIONS: dict[str, Any] = {
     "ws": "none",
+    "proxy_headers": False,  # the application reads them (api/server/prefix.py)
     "http": "api.server.connections:BoundedProtocol",
     "limit_concurrency": 400,
     "timeout_graceful_shutdown": 5,
@@ -51,6 +53,9 @@ def serve(
     access_log: Annotated[
         bool, typer.Option("--access-log", help="Print a line per request.")
     ] = False,
+    root_path: Annotated[
+        str, typer.Option(help="Prefix that a proxy in front takes off, such as /atlas.")
+    ] = "",
 ) -> None:
     """Serve the web pages, the guide and the HTTP API.
 
@@ -58,7 +63,14 @@ def serve(
     description at /openapi.json, Prometheus metrics at /metrics. The guide must be built first
     (`sunatlas guide build`). Stop with Ctrl-C. With several workers, SIGHUP replaces them one after
     another. A socket that systemd hands over is served instead of --host and --port.
+
+    Behind a proxy that serves it under a prefix, --root-path says which, or the proxy does by
+    X-Forwarded-Prefix, if FORWARDED_ALLOW_IPS (by default 127.0.0.1) has its address.
     """
+    root_path = root_path.rstrip("/")
+    if root_path and not PREFIX.fullmatch(root_path):
+        raise typer.BadParameter(f"expected a path such as /atlas; got {root_path}")
+    options = {**_OPTIONS, "root_path": root_path, "access_log": access_log}
     listener = inherited() or listen(host, port)
     with listener, contextlib.ExitStack() as stack:
         # Loaded before anything is served: damaged facts are refused in one sentence.
@@ -74,22 +86,21 @@ def serve(
         if workers > 1:
             os.environ["PROMETHEUS_MULTIPROC_DIR"] = shared
             take_time_to_end(_WORKERS_END_S)
-            _serve_by_many(listener, workers, access_log=access_log)
+            _serve_by_many(listener, workers, options)
             return
-        config = uvicorn.Config(application, access_log=access_log, log_config=_LOG, **_OPTIONS)
+        config = uvicorn.Config(application, log_config=_LOG, **options)
         uvicorn.Server(config).run(sockets=[listener])
 
 
-def _serve_by_many(listener: socket.socket, workers: int, *, access_log: bool) -> None:
+def _serve_by_many(listener: socket.socket, workers: int, options: dict[str, Any]) -> None:
     """Serve by several processes that share a listening socket, until a signal ends them."""
     config = uvicorn.Config(
         "api.server.serving:application_of_worker",
         factory=True,
         workers=workers,
         timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine
-        access_log=access_log,
         log_config=_LOG,
-        **_OPTIONS,
+        **options,
     )
     Multiprocess(config, [listener]).run()
 
