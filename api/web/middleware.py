@@ -1,4 +1,4 @@
-"""What holds for every response: security headers, who may read, ETag and 304, HEAD as GET."""
+"""What holds for every response: security, who may read, ETag and 304, parts, HEAD as GET."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.web.observation import count
+from api.web.ranges import parted
 
 CONTENT_SECURITY_POLICY = (
     # Documentation beside the pages carries style attributes; downloads are made in the page.
@@ -30,13 +31,13 @@ SECURITY_HEADERS = {
 #: nobody logs in. The page itself is for this site alone.
 SHARED_HEADERS = {
     "access-control-allow-origin": "*",
-    "access-control-expose-headers": "ETag, Link, Retry-After",
+    "access-control-expose-headers": "Accept-Ranges, Content-Range, ETag, Link, Retry-After",
     "cross-origin-resource-policy": "cross-origin",
 }
 OWN_HEADERS = {"cross-origin-resource-policy": "same-origin"}
 PREFLIGHT_HEADERS = {
     "access-control-allow-methods": "GET, HEAD, POST",
-    "access-control-allow-headers": "Accept, Content-Type, If-None-Match",
+    "access-control-allow-headers": "Accept, Content-Type, If-None-Match, If-Range, Range",
     "access-control-max-age": "86400",
     "vary": "Origin, Access-Control-Request-Method",
 }
@@ -77,7 +78,8 @@ class EveryResponse:
         taken = [
             (name, value)
             for name, value in scope["headers"]
-            if not (name == b"accept-encoding" and _NO_GZIP.search(value))
+            # a range counts the bytes of the content, not of its compression
+            if not (name == b"accept-encoding" and ("range" in asked or _NO_GZIP.search(value)))
         ]
         inner = {**scope, "headers": taken, "method": "GET" if method == "HEAD" else method}
         begin: Message = {"status": 500}
@@ -101,6 +103,9 @@ class EveryResponse:
                     begin["status"], body = 304, b""
                     for name in ("content-type", "content-length", "content-encoding"):
                         del headers[name]
+                elif inner["method"] == "GET":
+                    whole = Headers() if method == "HEAD" else asked
+                    begin["status"], body = parted(whole, headers, body)
             await send(begin)
             await send({"type": message["type"], "body": b"" if method == "HEAD" else body})
 
