@@ -64,7 +64,8 @@ def missing_builders() -> tuple[str, ...]:
 def digest() -> str:
     """Return what the site depends on as a digest: pages, code, record, and what builds it."""
     summed = hashlib.blake2b(digest_size=12)
-    found = [*source().rglob("*"), source().parent / "README.md", _HERE / "static" / "guide.css"]
+    found = [*source().rglob("*"), source().parent / "README.md"]
+    found += [*(_HERE / "static").iterdir(), *(_HERE / "templates").rglob("*")]
     for name in _PACKAGES:
         found += [*(_ROOT / name).rglob("*.py"), *(_ROOT / name).rglob("checksums-sha256.txt")]
     for path in sorted(found):
@@ -105,12 +106,16 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     _require_ours(out)
     log = io.StringIO()
     with temporary_directory() as scratch, replace_all(out) as (made,):
+        # A copy: a page a module of Python is written beside the pages, which may be read-only.
+        shutil.copytree(source(), scratch / "docs")
+        if (readme := source().parent / "README.md").is_file():
+            shutil.copy(readme, scratch)
         try:
             sphinx = Sphinx(
-                srcdir=source(),
+                srcdir=scratch / "docs",
                 confdir=None,
                 outdir=made,
-                doctreedir=scratch,
+                doctreedir=scratch / "doctrees",
                 buildername="html",
                 confoverrides=_settings(),
                 status=None,
@@ -178,7 +183,8 @@ def _settings() -> dict[str, Any]:
         "project": _PROJECT,
         "html_title": _PROJECT,
         "extensions": [
-            *("myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"),
+            *("myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary"),
+            "sphinx.ext.napoleon",
             "api.docs.extension",
         ],
         # Docstrings of the Python interface: names in backquotes are code, types are no links.
@@ -186,6 +192,7 @@ def _settings() -> dict[str, Any]:
         "autodoc_default_options": {"members": True},
         "autodoc_member_order": "bysource",
         "autodoc_preserve_defaults": True,
+        "templates_path": [os.fspath(_HERE / "templates")],
         "napoleon_google_docstring": False,
         "nitpick_ignore_regex": [("py:.*", ".*")],
         "myst_enable_extensions": ["dollarmath"],

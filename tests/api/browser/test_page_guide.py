@@ -56,7 +56,7 @@ def test_the_tutorial_is_reached_from_the_start_and_equations_are_drawn(wide: Vi
 @pytest.mark.parametrize(
     "path",
     ["", "guide/tutorial.html", "guide/data-dictionary.html", "models.html",
-     "guide/python.html", "leaderboard.html"],
+     "guide/python.html", "guide/python/algorithms.pipeline.html", "leaderboard.html"],
 )  # fmt: skip
 def test_a_phone_scrolls_tables_and_not_the_page(narrow: Visit, path: str) -> None:
     go(narrow, path)

@@ -46,6 +46,12 @@ def pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return directory
 
 
+def documented() -> list[str]:
+    """Modules that the page on Python lists."""
+    text = (DOCS / "guide" / "python.md").read_text("utf-8")
+    return re.findall(r"^   ([a-z_]+(?:\.[a-z_]+)*)$", text, re.MULTILINE)
+
+
 @pytest.mark.slow
 def test_the_site_is_built_without_a_warning(built: Built) -> None:
     out, done = built
@@ -54,7 +60,14 @@ def test_the_site_is_built_without_a_warning(built: Built) -> None:
     assert done.stdout.endswith("0 warnings\n")
     pages = {path.relative_to(out).with_suffix("").as_posix() for path in out.rglob("*.html")}
     written = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
-    assert pages == written | {"search"}
+    modules = {f"guide/python/{name}" for name in documented()}
+    assert len(modules) > 20
+    assert pages == written | modules | {"search"}
+    index = (out / "guide/python.html").read_text("utf-8")
+    for name in documented():
+        page = (out / f"guide/python/{name}.html").read_text("utf-8")
+        assert f'href="python/{name}.html' in index
+        assert re.search(rf'id="{re.escape(name)}\.\w', page), (name, "documents nothing")
     assert "<!-- built" not in "".join(path.read_text("utf-8") for path in out.rglob("*.html"))
 
 
