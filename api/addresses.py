@@ -5,23 +5,44 @@ from __future__ import annotations
 from collections.abc import Mapping
 from urllib.parse import quote, urlencode
 
-NAVIGATION = (
-    ("/calibrate", "Calibrate"),
-    ("/", "Answer"),
-    ("/studies", "Studies"),
-    ("/algorithms", "Algorithms"),
-    ("/datasets", "Data sets"),
-    ("/leaderboard", "Leaderboard"),
-    ("/claims", "Claims"),
-    ("/figures", "Figures"),
-    ("/compare", "Compare"),
-    ("/search", "Search"),
-    ("/glossary", "Glossary"),
-    ("/guide", "Guide"),
-)
-"""Address and name of every part, in the order of the masthead."""
+NAVIGATION: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "Answer": (
+        ("/", "Answer"),
+        ("/compare", "Compare"),
+        ("/detectors", "Detectors"),
+        ("/masks", "Masks"),
+    ),
+    "Evidence": (
+        ("/studies", "Studies"),
+        ("/claims", "Claims"),
+        ("/figures", "Figures"),
+        ("/algorithms", "Algorithms"),
+        ("/bibliography", "Bibliography"),
+    ),
+    "Measurements": (
+        ("/leaderboard", "Leaderboard"),
+        ("/datasets", "Data sets"),
+        ("/experiments", "Experiments"),
+    ),
+    "Calibrate": (("/calibrate", "Calibrate"),),
+    "Guide": (("/guide", "Guide"), ("/glossary", "Glossary"), ("/docs", "API reference")),
+}
+"""Sections in the order of the masthead, each with its pages; its link leads to the first."""
+PAGES = tuple(page for pages in NAVIGATION.values() for page in pages)
 KINDS = {"detector": "/detectors", "mask": "/masks"}
 """Attributes whose values have a page of their own."""
+
+
+def place_of(path: str) -> tuple[str, str]:
+    """Return the section of `NAVIGATION` that a path belongs to, and its page; "" for none."""
+    above = [
+        (at, section)
+        for section, pages in NAVIGATION.items()
+        for at, _ in pages
+        if path == at or path.startswith(f"{at}/")
+    ]
+    at, section = max(above, key=lambda found: len(found[0]), default=("", ""))
+    return section, at
 
 
 def study_page(key: str) -> str:

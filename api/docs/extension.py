@@ -16,9 +16,10 @@ from typing import Any
 from docutils import nodes
 from sphinx.application import Sphinx
 
-from api.addresses import NAVIGATION, algorithm_page, claim_page, dataset_page, study_page
+from api.addresses import PAGES, algorithm_page, claim_page, dataset_page, study_page
 from api.docs.built_parts import PARTS
 from api.mathml import mathml
+from api.pages.rendering import environment
 from benchmark import datasets
 from benchmark.claims.rules import claims
 from registry.catalogue import catalogue
@@ -27,7 +28,7 @@ from registry.studies import facts
 _BUILT = re.compile(r"<!-- built: (?P<name>[a-z-]+) -->")
 _INLINE_SCRIPT = re.compile(r"<script>(?P<code>.+?)</script>", re.DOTALL)
 #: Addresses of the atlas that pages name as code.
-_PLACES = ("/docs", "/experiments", "/openapi.json", "/bibliography")
+_PLACES = ("/openapi.json", "/search")
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -59,7 +60,7 @@ def link_names(document: nodes.document) -> None:
 
 
 def finish_page(page: Path, site: Path) -> None:
-    """Move scripts of a page to the site's files, let the keyboard scroll its code."""
+    """Put the atlas's head on a page, move scripts to files, let the keyboard scroll its code."""
     up = "../" * (len(page.relative_to(site).parts) - 1)
 
     def apart(match: re.Match[str]) -> str:
@@ -69,6 +70,9 @@ def finish_page(page: Path, site: Path) -> None:
 
     text = _INLINE_SCRIPT.sub(apart, page.read_text("utf-8")).replace("<pre>", '<pre tabindex="0">')
     caption = 'class="caption" role="heading"'
+    head = environment().get_template("masthead.html")
+    drawn = head.render(section="Guide", part="/guide", icon=f"{up}_static/icon.svg")
+    text = text.replace('<div class="page">', f'{drawn}<div class="page">', 1)
     page.write_text(text.replace(caption, f'{caption} aria-level="2"'), "utf-8")
 
 
@@ -81,7 +85,7 @@ def _pages() -> tuple[dict[str, str], dict[str, str]]:
     everywhere = {name: dataset_page(name) for name in datasets.names()}
     everywhere |= {name: claim_page(name) for name in claims()}
     everywhere |= {key: study_page(key) for key in facts("all").studies}
-    everywhere |= {place: place for place in (*dict(NAVIGATION), *_PLACES) if place != "/"}
+    everywhere |= {place: place for place in (*dict(PAGES), *_PLACES) if place != "/"}
     in_tables = {one.name: algorithm_page(one.name) for one in catalogue().implementations(None)}
     return everywhere, in_tables
 

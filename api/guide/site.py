@@ -17,7 +17,6 @@ from importlib.metadata import distributions, version
 from pathlib import Path
 from typing import Any
 
-from api.addresses import NAVIGATION
 from api.user_cache import user_cache
 from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable, temporary_directory
@@ -32,6 +31,10 @@ _PROJECT = "Sun Sensor Atlas"
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _HERE = Path(__file__).resolve().parent
 _ROOT = _HERE.parents[1]
+#: What the guide has of the pages: icon, head, and the choice of a colour scheme.
+_SHARED = tuple(
+    _HERE.parent / "static" / name for name in ("icon.svg", "styles/masthead.css", "theme.js")
+)
 #: Packages whose code and data pages are made of.
 _PACKAGES = ("algorithms", "api", "benchmark", "calibrate", "registry", "survey_data")
 
@@ -64,8 +67,9 @@ def missing_builders() -> tuple[str, ...]:
 def digest() -> str:
     """Return what the site depends on as a digest: pages, code, record, and what builds it."""
     summed = hashlib.blake2b(digest_size=12)
-    found = [*source().rglob("*"), source().parent / "README.md"]
+    found = [*source().rglob("*"), source().parent / "README.md", *_SHARED]
     found += [*(_HERE / "static").iterdir(), *(_HERE / "templates").rglob("*")]
+    found += [_HERE.parent / "pages" / "templates" / "masthead.html"]
     for name in _PACKAGES:
         found += [*(_ROOT / name).rglob("*.py"), *(_ROOT / name).rglob("checksums-sha256.txt")]
     for path in sorted(found):
@@ -171,12 +175,6 @@ def _require_ours(out: Path) -> None:
         )
 
 
-def _atlas_links() -> str:
-    """Return links to the parts of the atlas, as HTML for the head of every page."""
-    linked = [at for at in NAVIGATION if at[0] != "/guide"] + [("/docs", "API reference")]
-    return f"{_PROJECT}: " + " · ".join(f'<a href="{at}">{name}</a>' for at, name in linked)
-
-
 def _settings() -> dict[str, Any]:
     """Return what Sphinx reads from a conf.py elsewhere."""
     return {
@@ -201,10 +199,10 @@ def _settings() -> dict[str, Any]:
         "smartquotes": False,
         "html_math_renderer": "mathml",
         "html_theme": "furo",
-        "html_theme_options": {"announcement": _atlas_links()},
-        "html_static_path": [os.fspath(_HERE / "static")],
-        "html_css_files": ["guide.css"],
-        "html_favicon": os.fspath(_HERE.parent / "static" / "icon.svg"),
+        "html_static_path": [os.fspath(place) for place in (_HERE / "static", *_SHARED)],
+        "html_css_files": ["masthead.css", "guide.css"],
+        "html_js_files": ["theme.js"],
+        "html_favicon": os.fspath(_SHARED[0]),
         "html_copy_source": False,
         "html_domain_indices": False,  # a list of modules beside the search says nothing more
         "html_show_sphinx": False,

@@ -1,4 +1,4 @@
-"""/healthz, /metrics, /openapi.json and /docs: what the service says of itself."""
+"""/healthz, /metrics and /openapi.json: what the service says of itself."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from api.web.answers import StrictRoute
 from api.web.dependencies import NO_PARAMETERS, Known
 from api.web.negotiation import JSON, media_type
 from api.web.observation import exposition
-from api.web.static_files import PAGE, file_of
 
 EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 
@@ -35,12 +34,6 @@ async def health(request: Request, response: Response, known: Known) -> dict[str
 async def openapi(request: Request) -> Response:
     """Give the description of the service."""
     return JSONResponse(request.app.openapi())
-
-
-@router.get("/docs", include_in_schema=False)
-def docs() -> Response:
-    """Give the API reference, made of the description by Swagger UI."""
-    return file_of(PAGE, "reference.html", "page")
 
 
 @router.get("/metrics", include_in_schema=False)

@@ -52,8 +52,5 @@ def render(template: str, context: Mapping[str, Any]) -> str:
     template : file name in `templates/`
     context : by name; `path` and `query` are what was asked for
     """
-    part = next(
-        (at for at, _ in addresses.NAVIGATION if at != "/" and context["path"].startswith(at)),
-        "/" if context["path"] == "/" else "",
-    )
-    return environment().get_template(template).render(part=part, **context)
+    section, part = addresses.place_of(context["path"])
+    return environment().get_template(template).render(section=section, part=part, **context)

@@ -15,6 +15,7 @@ from api.pages import (
     glossary_page,
     leaderboard,
     measured_figures,
+    reference,
     search,
     sensors,
     study,
@@ -27,7 +28,7 @@ ROUTERS = (
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, directions, compare, search),
             *(glossary_page, leaderboard, bibliography, calibrate, experiments),
-            *(measured_figures, figures),
+            *(measured_figures, figures, reference),
         )
     ),
     experiments.pictures,

@@ -17,12 +17,3 @@ function unfold() {
 }
 addEventListener("hashchange", unfold);
 unfold();
-
-// On a narrow screen the parts are a row that scrolls: the one that is open is in sight.
-const current = document.querySelector(".masthead [aria-current]");
-if (current) {
-  // not scrollIntoView: the tab key would go on from there, past the link that skips to the content
-  const nav = current.closest("nav");
-  const [inner, outer] = [current.getBoundingClientRect(), nav.getBoundingClientRect()];
-  nav.scrollLeft += inner.left + inner.width / 2 - (outer.left + outer.width / 2);
-}

@@ -5,18 +5,22 @@
 
   function stored() {
     try {
-      return localStorage.getItem("theme");
+      const theme = localStorage.getItem("theme");
+      return theme === "auto" ? null : theme; // as the guide's theme wrote it
     } catch {
       return null; // storage refused: follow the system
     }
   }
 
-  function apply() {
-    const theme = stored() || (system.matches ? "dark" : "light");
+  function set(theme) {
     if (document.documentElement.dataset.theme === theme) return;
     document.documentElement.dataset.theme = theme;
+    document.documentElement.classList.toggle("dark-mode", theme === "dark"); // as Swagger UI reads it
+    if (document.body?.dataset.theme) document.body.dataset.theme = theme; // and the guide
     document.dispatchEvent(new CustomEvent("themechange"));
   }
+
+  const apply = () => set(stored() || (system.matches ? "dark" : "light"));
 
   function choose(theme) {
     try {
@@ -24,8 +28,7 @@
       if (theme === (system.matches ? "dark" : "light")) localStorage.removeItem("theme");
       else localStorage.setItem("theme", theme);
     } catch {
-      document.documentElement.dataset.theme = theme;
-      document.dispatchEvent(new CustomEvent("themechange"));
+      set(theme);
       return;
     }
     apply();
@@ -35,6 +38,7 @@
   system.addEventListener("change", apply);
 
   document.addEventListener("DOMContentLoaded", () => {
+    if (document.body.dataset.theme) document.body.dataset.theme = document.documentElement.dataset.theme;
     const button = document.getElementById("theme-toggle");
     const label = () => {
       const other = document.documentElement.dataset.theme === "dark" ? "light" : "dark";

@@ -91,6 +91,7 @@ def test_without_a_script_tables_are_read_and_questions_asked(plain: Page, addre
     ]
     plain.locator(".calibrated > summary").first.click()
     assert plain.locator(".calibration").first.is_visible()
+    follow(plain.locator("nav a", has_text="Measurements"))
     follow(plain.locator("nav a", has_text="Data sets"))
     follow(plain.locator("tbody a").first)
     assert plain.locator("#board ~ table tbody tr").count() > 5

@@ -95,7 +95,19 @@ def test_there_is_one_heading_of_the_page_and_none_is_skipped(page: Page) -> Non
 
 def test_every_part_of_the_atlas_is_a_press_away(page: Page) -> None:
     links = {value for tag, value in page.attributes("href") if tag == "a"}
-    assert {address for address, _ in NAVIGATION} <= links
+    assert {pages[0][0] for pages in NAVIGATION.values()} <= links
+    assert any(
+        tag == "form" and attributes.get("action") == "/search" for tag, attributes in page.tags
+    )
+
+
+def test_every_page_of_a_section_leads_to_the_others(atlas) -> None:
+    for section, pages in NAVIGATION.items():
+        for address, _ in pages if len(pages) > 1 else ():
+            text = atlas.get(address, accept="text/html").text
+            for other, name in pages if address != "/guide" else ():  # as soon as that is built
+                mark = ' aria-current="page"' if other == address else ""
+                assert f'<a href="{other}"{mark}>{name}</a>' in text, section
 
 
 def test_tables_name_their_columns_and_pictures_say_what_they_show(page: Page) -> None:
