@@ -1,50 +1,42 @@
-"""A reverse proxy for tests: serves what is behind a prefix, which it takes off, and nothing else.
+"""`python proxy.py PREFIX PORT [say]`: a reverse proxy that takes a prefix off, and serves no more.
 
-`python proxy.py PREFIX UPSTREAM_PORT [say]` prints its port; `say` sends X-Forwarded-Prefix.
+It prints its own port; `say` sends X-Forwarded-Prefix.
 """
 
 import sys
 from http.client import HTTPConnection
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
-PREFIX, UPSTREAM, *SAYS = sys.argv[1:]
-HOP_BY_HOP = {"connection", "keep-alive", "transfer-encoding"}
+PREFIX, PORT, *SAY = sys.argv[1:]
 
 
 class Handler(BaseHTTPRequestHandler):
     """Passes a request on, and back what is answered."""
 
-    protocol_version = "HTTP/1.1"
-
-    def pass_on(self) -> None:
+    def do_GET(self) -> None:
         """Answer as the service behind does, or 404 outside the prefix."""
         if not self.path.startswith(f"{PREFIX}/"):
-            self.send_error(404, "outside the prefix")
+            self.send_error(404)
             return
         sent = {name: value for name, value in self.headers.items() if name != "Connection"}
-        sent["X-Forwarded-For"] = self.client_address[0]
-        sent |= {"X-Forwarded-Prefix": PREFIX} if SAYS else {}
+        sent |= {"X-Forwarded-Prefix": PREFIX} if SAY else {}
         body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
-        behind = HTTPConnection("127.0.0.1", int(UPSTREAM), timeout=300)
+        behind = HTTPConnection("127.0.0.1", int(PORT), timeout=300)
         behind.request(self.command, self.path.removeprefix(PREFIX), body or None, sent)
         answer = behind.getresponse()
-        content = answer.read()
         self.send_response(answer.status)
-        for name, value in answer.getheaders():
-            if name.lower() not in HOP_BY_HOP:
-                self.send_header(name, value)
+        for header in answer.getheaders():
+            self.send_header(*header)
         self.end_headers()
-        self.wfile.write(content)
+        self.wfile.write(answer.read())
         behind.close()
-
-    do_GET = do_HEAD = do_POST = pass_on  # noqa: N815 - as http.server calls them
 
     def log_message(self, *_: object) -> None:
         """Say nothing."""
 
 
-if __name__ == "__main__":
-    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    sys.stdout.write(f"{server.server_address[1]}\n")
-    sys.stdout.flush()
-    server.serve_forever()
+Handler.do_POST = Handler.do_GET  # type: ignore[attr-defined]
+server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+sys.stdout.write(f"{server.server_address[1]}\n")
+sys.stdout.flush()
+server.serve_forever()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import io
 import json
 import re
@@ -11,7 +12,6 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 from urllib.parse import urldefrag, urljoin, urlsplit
@@ -24,108 +24,68 @@ from tests.api.browser.visiting import build_guide
 from tests.api.conftest import Client
 from tests.api.pages.addresses import BESIDE, KINDS
 
-PROXY = Path(__file__).with_name("proxy.py")
+PAGE = {"Accept": "text/html,*/*;q=0.8"}
+#: Links of one shape, such as /studies/KEY, that are followed.
+MOST_ALIKE = 4
 #: Neither links nor examples: what was asked for, said again, and texts to read.
-MOST_ALIKE = 4  # links of one shape, such as /studies/KEY, that are followed
 SAID_AGAIN = {"value", "parameter", "nearest", "expected", "description", "example", "default"}
 
 
 @contextmanager
-def proxied(prefix: str, port: int, *say: str) -> Iterator[httpx.Client]:
-    """A client of a proxy, a process of its own, in front of a port."""
-    command = [sys.executable, str(PROXY), prefix, str(port), *say]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
-        assert running.stdout is not None
-        address = f"http://127.0.0.1:{running.stdout.readline().strip()}"
-        try:
+def proxied(
+    atlas: Client, serve: Callable[..., Any], prefix: str, *say: str, trusted: str = "127.0.0.1"
+) -> Iterator[httpx.Client]:
+    """A client of a proxy, a process of its own, in front of the service."""
+    app = ForwardedPrefix(atlas.app, trusted)  # type: ignore[arg-type]
+    options = {} if say else {"root_path": prefix}
+    with serve(app, proxy_headers=False, **options) as behind:
+        proxy = [sys.executable, f"{Path(__file__).parent}/proxy.py", prefix, str(behind.port)]
+        with subprocess.Popen([*proxy, *say], stdout=subprocess.PIPE, text=True) as running:
+            assert running.stdout is not None
+            address = f"http://127.0.0.1:{running.stdout.readline().strip()}"
             with httpx.Client(base_url=address, timeout=300) as client:
                 yield client
-        finally:
             running.terminate()
 
 
-class Links(HTMLParser):
-    """Addresses of a page: of its links, and every attribute or metadatum that starts with /."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.found: set[str] = set()
-        self.inside = ""
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = {name: value or "" for name, value in attrs}
-        self.inside = given.get("type", "")
-        self.found |= {
-            value
-            for name, value in given.items()
-            if name in {"href", "src", "action"} or (value.startswith("/") and name != "value")
-        }
-
-    def handle_data(self, data: str) -> None:
-        if self.inside == "application/ld+json":
-            self.found |= set(paths(json.loads(data)))
-        self.inside = ""
-
-
 def paths(document: Any) -> Iterator[str]:
-    """Values in a document that are paths."""
+    """Values in a document that are paths, or addresses of this service."""
     if isinstance(document, dict):
-        for name, value in document.items():
-            yield from paths(value if name not in SAID_AGAIN else None)
-    elif isinstance(document, list):
+        document = [value for name, value in document.items() if name not in SAID_AGAIN]
+    if isinstance(document, list):
         for value in document:
             yield from paths(value)
-    elif isinstance(document, str) and document.startswith("/"):
+    elif isinstance(document, str) and document.startswith(("/", "http://127.0.0.1:")):
         yield document
 
 
-def links_of(answer: httpx.Response) -> set[str]:
+def links_of(answer: httpx.Response) -> Iterator[str]:
     """Addresses in a response of any kind, and in its headers."""
-    kind, found = answer.headers.get("content-type", "").partition(";")[0], set()
-    found |= set(re.findall(r"<([^>]*)>", answer.headers.get("link", "")))
-    found |= {answer.headers["location"]} if "location" in answer.headers else set()
+    kind = answer.headers.get("content-type", "").partition(";")[0]
+    yield from re.findall(r"<([^>]*)>", answer.headers.get("link", ""))
+    yield from filter(None, [answer.headers.get("location")])
     if kind == "text/html":
-        found |= Links(answer.text).found
+        for name, value in re.findall(r'\s([\w-]+)="([^"]*)"', answer.text):
+            if name in {"href", "src", "action"} or (value.startswith("/") and name != "value"):
+                yield html.unescape(value)
+        for found in re.findall(r'<script type="application/ld\+json">(.*?)</script>', answer.text):
+            yield from paths(json.loads(found))
     elif kind.endswith("json"):
-        found |= set(paths(answer.json()))
-        found |= set(re.findall(r'"(http://127[^"]*)"', answer.text))  # of Croissant, link sets
+        yield from paths(answer.json())
     elif kind == "text/csv":
-        cells = csv.reader(io.StringIO(answer.text))
-        found |= {cell for row in cells for cell in row if cell.startswith("/")}
-    return found
+        yield from (paths(list(csv.reader(io.StringIO(answer.text)))))
 
 
-def addresses(client: httpx.Client) -> Iterator[tuple[str, str]]:
-    """Every kind of page, and every path of the API with its example, under the prefix."""
-    besides = ("/calibrate", "/docs", "/guide", "/openapi.json")
-    for kind, address in {**KINDS, **BESIDE, **dict(zip(besides, besides, strict=True))}.items():
-        yield kind, f"/atlas{address}"
+def addresses(client: httpx.Client) -> Iterator[tuple[str, dict[str, str]]]:
+    """Every kind of page, and every document of the API as JSON, CSV and for Plotly."""
+    for at in (*KINDS.values(), *BESIDE.values(), "/calibrate", "/docs", "/guide", "/openapi.json"):
+        yield f"/atlas{at}", PAGE
     for path, operations in client.get("/atlas/openapi.json").json()["paths"].items():
         parameters = operations.get("get", {}).get("parameters", [])
         named = {p["name"]: p.get("example") for p in parameters if p["in"] == "path"}
         if "get" in operations and None not in named.values():
-            yield path, "/atlas" + path.format(**named)
-
-
-def kinds_of_answer(client: httpx.Client, kind: str, address: str) -> Iterator[httpx.Response]:
-    """A page; a document as JSON, CSV and for Plotly, as far as there is one."""
-    of_api = kind.startswith("/v1")
-    accept = "application/json" if of_api else "text/html,*/*;q=0.8"
-    yield client.get(address, headers={"Accept": accept})
-    for form in ("csv", "plotly") if of_api else ():
-        yield client.get(address, params={"format": form})
-
-
-def own_links(known: dict[str, set[str]]) -> Iterator[tuple[str, str]]:
-    """Links on the same host as the page where they stand, each once, with that page."""
-    seen: set[str] = set()
-    for page, links in known.items():
-        for link in links:
-            target = urldefrag(urljoin(page, link))[0]
-            if target not in seen and urlsplit(target).netloc == urlsplit(page).netloc:
-                seen.add(target)
-                yield target, page
+            for form in ("", "?format=csv", "?format=plotly"):
+                yield f"/atlas{path.format(**named)}{form}", {}
 
 
 @pytest.mark.slow
@@ -133,74 +93,64 @@ def test_no_link_leaves_the_prefix_and_none_is_broken(
     atlas: Client, serve: Callable[..., Any]
 ) -> None:
     build_guide()
-    app = ForwardedPrefix(atlas.app)  # type: ignore[arg-type]
-    with (
-        serve(app, proxy_headers=False, root_path="/atlas") as behind,
-        proxied("/atlas", behind.port) as client,
-    ):
+    seen: set[str] = set()
+    alike = Counter[tuple[object, ...]]()
+    with proxied(atlas, serve, "/atlas") as client:
         assert client.get("/studies").status_code == 404, "the proxy serves the prefix alone"
-        known = {
-            str(answer.url): links_of(answer)
-            for kind, address in addresses(client)
-            for answer in kinds_of_answer(client, kind, address)
-        }
-        alike = Counter[tuple[object, ...]]()
-        for target, page in own_links(known):
-            parts = urlsplit(target)
-            assert parts.path.startswith("/atlas/"), (page, target)
-            _, _, part, *rest = parts.path.split("/")
-            shape = (part, len(rest), Path(parts.path).suffix, bool(parts.query))
-            alike[shape] += 1
-            if alike[shape] <= MOST_ALIKE:
-                answer = client.get(target, headers={"Accept": "text/html,*/*;q=0.8"})
-                is_refusal = page.endswith(("nowhere", "Nobody1900"))
-                assert answer.status_code != 404 or is_refusal, (page, target)
-                beyond = own_links({target: links_of(answer)})
-                assert all(urlsplit(link).path.startswith("/atlas/") for link, _ in beyond), target
-        assert len(alike) > 60
+
+        def new_links(answer: httpx.Response) -> Iterator[str]:
+            for link in links_of(answer):
+                target = urlsplit(urldefrag(urljoin(str(answer.url), link))[0])
+                if target.netloc == answer.url.netloc.decode() and target.geturl() not in seen:
+                    assert target.path.startswith("/atlas/"), (answer.url, link)
+                    seen.add(target.geturl())
+                    yield target.geturl()
+
+        for address, headers in addresses(client):
+            first = client.get(address, headers=headers)
+            for target in new_links(first):
+                parts = urlsplit(target)
+                _, _, part, *rest = parts.path.split("/")
+                shape = (part, len(rest), Path(parts.path).suffix, bool(parts.query))
+                alike[shape] += 1
+                if alike[shape] <= MOST_ALIKE:
+                    answer = client.get(target, headers=PAGE)
+                    # the JSON of a page that refuses refuses as well
+                    assert first.status_code == 404 or answer.status_code != 404, (address, target)
+                    assert list(new_links(answer)) is not None
+    assert len(alike) > 60
 
 
 def test_a_trusted_proxy_says_the_prefix_and_nobody_else(
     atlas: Client, serve: Callable[..., Any]
 ) -> None:
-    trusting = ForwardedPrefix(atlas.app, "127.0.0.1")  # type: ignore[arg-type]
-    wary = ForwardedPrefix(atlas.app, "192.0.2.1")  # type: ignore[arg-type]
-    seen = {}
-    for app in (trusting, wary):
-        with (
-            serve(app, proxy_headers=False) as behind,
-            proxied("/a", behind.port, "say") as client,
-        ):
-            seen[app] = client.get("/a/claims/C04", headers={"Accept": "text/html"})
-    assert 'href="/a/claims"' in seen[trusting].text
-    assert 'href="/claims"' in seen[wary].text
-    assert "/a/" not in seen[wary].text
-    assert seen[trusting].headers["etag"] != seen[wary].headers["etag"], "no kept page mixes them"
-    with serve(trusting, proxy_headers=False) as behind:
-        for damaged in ("//evil.example", "/a b", '/"><script>', "/..", "http://evil.example"):
-            asked = {"X-Forwarded-Prefix": damaged, "Accept": "text/html"}
+    def claim(prefix: str, trusted: str) -> httpx.Response:
+        with proxied(atlas, serve, prefix, "say", trusted=trusted) as client:
+            return client.get(f"{prefix}/claims/C04", headers=PAGE)
+
+    trusting, wary = claim("/a", "127.0.0.1"), claim("/a", "192.0.2.1")
+    assert 'href="/a/claims"' in trusting.text
+    assert 'href="/claims"' in wary.text
+    assert "/a/" not in wary.text
+    assert trusting.headers["etag"] != wary.headers["etag"], "no kept page mixes them"
+    with serve(ForwardedPrefix(atlas.app), proxy_headers=False) as behind:  # type: ignore[arg-type]
+        for damaged in ('/"><script>', "/..", "/a;b", "//evil.example"):
+            asked = {"Accept": "text/html", "X-Forwarded-Prefix": damaged}
             behind.request("GET", "/claims/C04", headers=asked)
             assert b'href="/claims"' in behind.getresponse().read(), damaged
 
 
-def test_moved_addresses_and_pages_of_lists_stay_below_the_prefix(
+def test_headers_and_refusals_have_the_prefix_and_texts_do_not(
     atlas: Client, serve: Callable[..., Any]
 ) -> None:
-    app = ForwardedPrefix(atlas.app)  # type: ignore[arg-type]
-    with (
-        serve(app, proxy_headers=False, root_path="/a/b") as behind,
-        proxied("/a/b", behind.port) as client,
-    ):
+    with proxied(atlas, serve, "/a/b") as client:
         assert client.get("/a/b/guide").headers["location"] == "/a/b/guide/"
         listed = client.get("/a/b/v1/claims?limit=2")
         assert urlsplit(listed.links["next"]["url"]).path == "/a/b/v1/claims"
-        again = client.get(
-            "/a/b/v1/claims?limit=2", headers={"If-None-Match": listed.headers["etag"]}
-        )
-        assert again.status_code == 304
+        kept = {"If-None-Match": listed.headers["etag"]}
+        assert client.get("/a/b/v1/claims?limit=2", headers=kept).status_code == 304
         described = client.get("/a/b/openapi.json").json()
         assert described["servers"][0]["url"] == "/a/b/"
         assert "/v1/claims" in described["paths"]
-        found = client.get("/a/b/search", params={"q": "/a"}, headers={"Accept": "text/html"})
-        assert 'value="/a"' in found.text, "a text is no address"
         assert client.get("/a/b/v1/nothing").json()["instance"] == "/a/b/v1/nothing"
+        assert 'value="/a"' in client.get("/a/b/search?q=/a", headers=PAGE).text
