@@ -1,4 +1,4 @@
-"""The service under a prefix that a proxy takes off, such as /atlas: links hold as they are sent.
+"""The service under a prefix that a proxy removes, such as /atlas: links hold as they are sent.
 
 Whatever makes an answer knows addresses from "/"; one place puts the prefix before them.
 """

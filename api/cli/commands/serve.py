@@ -54,7 +54,7 @@ def serve(
         bool, typer.Option("--access-log", help="Print a line per request.")
     ] = False,
     root_path: Annotated[
-        str, typer.Option(help="Prefix that a proxy in front takes off, such as /atlas.")
+        str, typer.Option(help="Prefix that a proxy in front removes, such as /atlas.")
     ] = "",
 ) -> None:
     """Serve the web pages, the guide and the HTTP API.

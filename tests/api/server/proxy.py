@@ -1,4 +1,4 @@
-"""`python proxy.py PREFIX PORT [say]`: a reverse proxy that takes a prefix off, and serves no more.
+"""`python proxy.py PREFIX PORT [say]`: a reverse proxy that removes a prefix, and serves no more.
 
 It prints its own port; `say` sends X-Forwarded-Prefix.
 """
