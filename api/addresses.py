@@ -15,6 +15,7 @@ NAVIGATION: Mapping[str, tuple[tuple[str, str], ...]] = {
     "Evidence": (
         ("/studies", "Studies"),
         ("/claims", "Claims"),
+        ("/directions", "Directions"),
         ("/figures", "Figures"),
         ("/algorithms", "Algorithms"),
         ("/bibliography", "Bibliography"),
@@ -23,6 +24,9 @@ NAVIGATION: Mapping[str, tuple[tuple[str, str], ...]] = {
         ("/leaderboard", "Leaderboard"),
         ("/datasets", "Data sets"),
         ("/experiments", "Experiments"),
+        ("/figures/gap", "Gap"),
+        ("/figures/trade-off", "Trade-off"),
+        ("/figures/robustness", "Robustness"),
     ),
     "Calibrate": (("/calibrate", "Calibrate"),),
     "Guide": (("/guide", "Guide"), ("/glossary", "Glossary"), ("/docs", "API reference")),

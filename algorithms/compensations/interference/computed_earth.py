@@ -65,9 +65,10 @@ class ComputedEarth(CalibratedCompensation):
     -----
     Implements: the model's sum that Bhanderi2006 compares eq:albedo2 with (model:albedo), for a
     ground that reflects alike everywhere by Lambert's law:
-    ``E_k = a/pi sum over patches of max(0, g . s) r(max(0, v . n_k)) dOmega``, g the normal of the
-    ground that is seen along v, n_k that of the face, r its response, s the Sun. The Sun is found
-    from the faces that it lights, by least squares, and E_k from that, in turn.
+    ``E_k = (a / pi) sum(w_j (g_j . s) r(v_j . n_k))`` over patches j that both the Sun and the face
+    see: w_j their solid angle, g_j the normal of the ground that is seen along v_j, n_k that of the
+    face, r its response, s the Sun. The Sun is found from the faces that it lights, by least
+    squares, and E_k from that, in turn.
 
     Shapes: signals (N, K), in any common unit, to the same. Context: ``nadir`` (N, 3).
 

@@ -28,6 +28,7 @@ KINDS = {
     "architecture": "/architectures/CMOS/Encoded",
     "claims": "/claims",
     "claim": "/claims/C04",
+    "directions": "/directions",
     "experiments": "/experiments",
     "experiment": "/experiments/learning_curves",
     "compare": "/compare",
