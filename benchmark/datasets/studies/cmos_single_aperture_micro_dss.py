@@ -21,7 +21,7 @@ _SETUPS = pixels.pixel_conditions(_SENSOR)
 
 PRESET = pixels.windows(
     name="cmos-single-aperture-micro-dss",
-    version=2,
+    version=3,
     drawn_as=1,
     detector="CMOS",
     mask="Single-Ap.",

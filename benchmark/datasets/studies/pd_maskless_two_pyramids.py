@@ -27,7 +27,8 @@ _CALIBRATED_C, _HOTTER_C = (-20.0, 40.0), (60.0, 80.0)
 PRESET = ThermalChamberPreset.of(
     faces(
         name="pd-maskless-two-pyramids",
-        version=1,
+        version=2,
+        drawn_as=1,
         detector="PD",
         normals=CUBE,
         order=f"{OF_THE_CUBE}: +x, +y, +z on one pyramid, -x, -y, -z on the other",
