@@ -79,7 +79,13 @@ def selects(selector: str, facts: Mapping[str, str]) -> bool:
 
 
 def is_of(family: str, extractor: str, model: str) -> bool:
-    """Say whether a pipeline belongs to a family; of a chain the model at its end counts."""
+    """Say whether a pipeline belongs to a family.
+
+    Behind compensations a model counts among all others only: two families by name meet with the
+    same readings before them.
+    """
+    if " + " in model and family.startswith("model=") and "!" not in family:
+        return False
     return selects(family, {"extractor": extractor, "model": model.rsplit(" + ", maxsplit=1)[-1]})
 
 

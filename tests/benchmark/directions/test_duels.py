@@ -83,7 +83,9 @@ def test_the_verdict_needs_three_quarters_of_two_data_sets() -> None:
 def test_the_rules_are_those_of_the_surveys_table_and_name_what_exists() -> None:
     table = load().approaches
     assert [rule.specific for rule in rules().values()] == table["specific"].tolist()
-    assert is_of("model=lut", "any", "optical + lut")
+    assert is_of("model=!ann", "any", "optical + lut")
+    assert not is_of("model=lut", "any", "optical + lut")
+    assert not is_of("model=!lut", "any", "optical + lut")
     for rule in rules().values():
         if rule.kind == "duel":
             assert any(rule.is_on(datasets.get(name)) for name in datasets.names()), rule.id
