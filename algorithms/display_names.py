@@ -56,6 +56,8 @@ DISPLAY_NAMES: Mapping[str, str] = {
     "voltage-balance": "Voltage balance",
     # compensations
     "angular-loss": "Angular loss compensation",
+    "computed-earth": "Computed albedo compensation",
+    "computed-earth-balance": "Computed albedo compensation of quadrants",
     "maximum-currents": "Maximum current compensation of albedo",
     "optical": "Refraction compensation",
     "pinhole-shadow": "Shadow compensation of a round hole",

@@ -49,7 +49,7 @@ class HeightOrder:
         """What holds, in words; empty where it does not."""
         if not self.holds:
             return ""
-        left = f"; {self.without} without a height or an error are left out" if self.without else ""
+        left = f"; {self.without} have no height or error" if self.without else ""
         return (
             "Most of the order of these errors is the height's (mask or lens to detector): over "
             f"{self.sensors} architectures the rank correlation of error and 1/height is "

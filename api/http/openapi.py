@@ -31,7 +31,7 @@ TAGS: dict[str, tuple[str, str]] = {
     ),
     "Literature": (
         "Studies of the survey, its vocabulary, figures and claims.",
-        "studies taxonomy flows figures claims protocol editions",
+        "studies taxonomy flows figures claims directions protocol editions",
     ),
     "Measurements": (
         "Algorithms, data sets, scores, leaderboards and experiments.",

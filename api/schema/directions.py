@@ -32,7 +32,7 @@ class DirectionRow(Shape):
     kind: Literal["duel", "paper", "untried"] = Field(
         description="Decided by families of methods in the record, or by a calculation."
     )
-    verdict: Verdict
+    verdict: Verdict = Field(description="By the rule; open: told apart on too few data sets.")
     text: str = Field(description="What decides, in a sentence.")
     rule: str = Field(description="What decides, as it was written down before; empty if untried.")
     value: float | None = Field(description="The number that decides.")

@@ -54,7 +54,7 @@ def test_sensors_without_a_height_or_an_error_are_left_out_and_counted():
     found = height_order([*known, (0.1, None), (None, 1.0), (float("inf"), 2.0)])
     assert found is not None
     assert (found.sensors, found.without) == (5, 3)
-    assert "3 without a height or an error are left out" in found.sentence
+    assert "3 have no height or error" in found.sentence
 
 
 def test_four_sensors_are_too_few():
