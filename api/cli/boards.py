@@ -15,7 +15,7 @@ Row = Mapping[str, Any]
 WIDTH = 80
 _HEADINGS = ("architecture", "best pipeline", "flight", "own", "", "bounds", "bench")
 _NUMBERS = frozenset({"flight", "own", "bounds", "bench", "median", *map("{:g}".format, WITHIN)})
-_MORE = "More: --dataset NAME, --each (every data set), --overview (parts), --format json."
+_MORE = "More: --dataset NAME, --each (every data set), --overview, --format json."
 _ARCHITECTURE = (17, 32)  # columns of names; numbers take the rest
 
 

@@ -68,7 +68,7 @@ def test_the_record_is_of_the_code_as_it_is():
 def test_it_is_small_and_holds_nothing_that_can_be_derived():
     sampled = [path for path in files() if path.parent.name == "samples"]
     assert sum(path.stat().st_size for path in sampled) < 7e6
-    assert sum(path.stat().st_size for path in files() if path not in sampled) < 6e6
+    assert sum(path.stat().st_size for path in files() if path not in sampled) < 6.5e6
     sets = {cell.dataset for cell in plan.cells()}
     tables = {f"scores/{name}.csv" for name in sets}
     names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
