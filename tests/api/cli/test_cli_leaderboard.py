@@ -29,8 +29,9 @@ def rows():
 
 
 def table_of(text):
-    """Lines of the table: between the two empty lines, without its head."""
-    return text.split("\n\n")[1].splitlines()[1:]
+    """Rows of the table: between the two empty lines, without its head, long names unfolded."""
+    _, *lines = text.split("\n\n")[1].splitlines()
+    return "\n".join(lines).replace("\n  ", "  ").splitlines()
 
 
 def test_without_options_the_answer_fits_one_screen(rows):
@@ -39,7 +40,7 @@ def test_without_options_the_answer_fits_one_screen(rows):
     assert len(lines) <= LINES
     assert max(map(len, lines)) <= COLUMNS
     table = table_of(text)
-    assert len(table) == len(rows), "no row is broken over two lines"
+    assert len(table) == len(rows)
     for line, row in zip(table, rows, strict=True):
         architecture = f"{row['detector']} {row['mask']}"
         assert line.startswith(architecture)
