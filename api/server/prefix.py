@@ -59,7 +59,7 @@ class UnderPrefix:
     """ASGI middleware: puts the prefix before the addresses in pages, documents and headers.
 
     It stands within the compression and the digest of what travels, so that ETags of a document
-    under two prefixes differ, and outside all that is kept, which knows of none.
+    under two prefixes differ, and outside all caches, whose entries have no prefix.
     """
 
     def __init__(self, app: ASGIApp) -> None:

@@ -26,7 +26,7 @@ Row = Mapping[str, Any]
 #: Full field of view of a sensor that is made for all directions.
 _EVERYWHERE_DEG = 360.0
 _FILTERS = ("detector", "mask", "dataset", "extractor", "model")
-#: What is asked of reports, by column.
+#: Costs that reports can be compared by.
 _OF_REPORTS = ("field", *OF_PRODUCTS)
 
 

@@ -134,8 +134,8 @@ def _shift_bound_mm(image: Floats) -> float:
     return math.sqrt(float(np.mean(1.0 / np.array(information))))
 
 
-#: Speed of the Sun's equator along the line of sight at its limb, and of its granules' cells
-#: (supergranulation), m/s; cells over the disc that move each by themselves.
+#: Speed of the Sun's equator along the line of sight at its limb, and assumed of the cells of
+#: supergranulation, m/s; cells of some 30,000 km over the disc, each with a motion of its own.
 EQUATOR_M_S, CELLS_M_S, CELLS = 2000.0, 300.0, 1500
 #: Photons of sunlight at 630 nm, a second, square metre and nanometre; the passband on a slope of a
 #: line, nm; area of a lens, m^2; share of photons that is counted; seconds.
@@ -163,9 +163,9 @@ def third_axis() -> Calculation:
         needed,
         "deg",
         turn <= needed,
-        f"A lens of 1 cm2 counts photons for {shot:.1g} deg in a second, but convection, 300 m/s "
-        f"in {CELLS} cells beside 2 km/s of rotation, leaves {cells:.2g} deg for as long as its "
-        "cells live, about a day. A small star tracker gives all three axes to 0.01 deg.",
+        f"A lens of 1 cm2 counts photons for {shot:.1g} deg in a second, but convection (assumed: "
+        f"300 m/s in {CELLS} cells that move by themselves) beside 2 km/s of rotation leaves "
+        f"{cells:.2g} deg for as long as its cells live, about a day.",
     )
 
 

@@ -48,7 +48,7 @@ class Bound:
     observable
         (N,) bool.
     unit_angle_deg
-        (N,) as `angle_deg`, for who knows of the unit what references and poses tell; inf
+        (N,) as `angle_deg`, with the unit known only by references and poses; inf
         where the direction is not observable, or not then. None where it was not asked for, or
         the sensor's elements do not differ each by itself.
     fisher

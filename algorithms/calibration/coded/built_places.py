@@ -182,7 +182,7 @@ class BuiltMask(ForwardModel):
             self.noise_ = variances[0]
 
     def displacements(self, spots: Floats, holes: Holes, places: Floats) -> Floats:
-        """Displacements (N, 2) of spots (N, K, 2); NaN rows where none is told.
+        """Displacements (N, 2) of spots (N, K, 2); NaN rows where no spot is identified.
 
         Weighed means, freed of the bias ``b sin(2 pi x)`` that pixels make alike for all spots of a
         frame, each axis by itself.

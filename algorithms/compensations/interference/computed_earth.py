@@ -181,7 +181,7 @@ class ComputedEarth(CalibratedCompensation):
 def _fitted(signals: Floats, cosine: Floats, earth: Floats) -> Floats:
     """Level, sunlight, Earth's light and the response's bends at all knots but the first, of (n,).
 
-    Bends are held to be small, so that those which no sample tells of are none.
+    A weak prior of zero holds bends that no sample determines.
     """
     bends = np.column_stack([np.interp(cosine, _KNOTS, row) for row in np.eye(len(_KNOTS))[1:]])
     matrix = np.column_stack([np.ones(len(cosine)), cosine, earth, bends])

@@ -38,7 +38,7 @@ def posterior_bound(
     """Bound (N,) of the test split, degrees, for pipelines that a sample's own bound is not for.
 
     Light from the Earth counts as known, and so do the unit and its drift, as in the bound of one
-    sample, or what references and the calibration split tell of them (`Unknowns`). A sequential
+    sample, unless `unit_known` is False: then they are `Unknowns`. A sequential
     pipeline knows all readings up to each sample, the gyroscope's among them, and the strength of
     sunlight. A magnetometer's and a horizon sensor's readings count where the pipeline
     reads their counterparts in the inertial frame and the almanac's Sun, too (nadir alone says

@@ -1,4 +1,4 @@
-"""What is unknown of a unit in flight, and what its calibration orbits tell of it: `Unknowns`.
+"""Unknown parameters of a unit in flight, and the information on them: `Unknowns`.
 
 Gains of a few elements and their drifts, and how the head stands, bends and creeps. Earth, heaters
 and pixels count as known.
@@ -22,7 +22,7 @@ from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.sensor import FixedPattern, GainSpread
 
-#: How a head may stand before its calibration tells: next to nothing is known of it. Tilts about x
+#: Prior spread of how a head stands, so wide that the calibration decides. Tilts about x
 #: and y (deg), focal length and offsets (mm).
 _STANDS = np.array([1.0, 1.0, 0.1, 0.1, 0.1])
 _STEPS = np.array([1e-3, 1e-3, 1e-5, 1e-5, 1e-5])
@@ -51,7 +51,7 @@ class Unknowns:
         return _without_light(self.fisher, irradiance_known=irradiance_known)
 
     def direction(self, *, irradiance_known: bool) -> Floats:
-        """(N, 2, 2) on the direction of who has a sample and what was known before."""
+        """(N, 2, 2) on the direction, from one sample and the prior information."""
         whole = self.information(irradiance_known=irradiance_known)
         cross, own = whole[:, :2, 2:], whole[:, 2:, 2:] + self.known
         return np.asarray(whole[:, :2, :2] - cross @ np.linalg.solve(own, np.swapaxes(cross, 1, 2)))
@@ -86,13 +86,13 @@ def _unknowns(kept: Same, condition: str) -> Unknowns | None:
     if test is None:
         return None
     calibration = np.asarray(_fisher(preset, condition, "calibration"))
-    # who is told the Sun has all of a sample for the unknowns
+    # with the Sun known, all information of a sample is on the unknowns
     told = _without_light(calibration, irradiance_known=True)[:, 2:, 2:].sum(axis=0)
     return Unknowns(test, _prior(preset, condition) + told)
 
 
 def unit_angle_deg(own: Unknowns, single: Bound) -> Floats:
-    """(N,) bound of one sample for who does not know the unit, degrees; inf where not observable.
+    """(N,) bound of one sample with the unit unknown, degrees; inf where not observable.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def _fisher(preset: Any, condition: str, split: str) -> Floats | None:
     if not isinstance(sensor, GainSpread):
         if (head := _head(sensor)) is None:
             return None
-        # a head that moves shows the Sun elsewhere: what is told of one is told of the other
+        # moving the head moves the image as moving the Sun does: one Fisher matrix serves both
         turns = _head_slopes(sensor, head, scene)
         widen = np.zeros((len(scene), 4, 4 + turns.shape[2]))
         widen[:, :4, :4] = np.eye(4)
