@@ -17,8 +17,8 @@ TITLE = "Claimed, built, simulated, possible"
 CAPTION = (
     "RMS error of each architecture: as studies and products report it, in simulated flight "
     "(calibrated on the ground once, then flown), own (calibrated with true directions), and the "
-    "Cramer-Rao bound. Measured numbers are of one pipeline each; sensors differ in field and "
-    "height."
+    "Cramer-Rao bound with the sensor unit known, in orbit its drift, too. Measured numbers are of "
+    "one pipeline each; sensors differ in field and height."
 )
 Row = Mapping[str, Any]
 Marks = Sequence[tuple[Row, str, float]]
