@@ -60,7 +60,8 @@ def robustness_figure(
         f"RMS error of each {rows} as a multiple of the Cramer-Rao bound (unit 0, known), median "
         "over data sets, by its best pipeline under the first condition. A cross: availability "
         "below 95 % on half of the data sets or more. Grey: not tested; k: thousand. Unless "
-        f"conditions are asked for, those of {_MANY} data sets or more are drawn; the table has all."
+        f"conditions are asked for, those of {_MANY} data sets or more are drawn; the table has "
+        "all."
     )
     if pairwise:
         caption = (
