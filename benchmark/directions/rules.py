@@ -26,8 +26,8 @@ DUEL = (
     "It pays where the first family has the smaller error, by more than 3 % and beyond the scatter "
     "of units (5 %), on three quarters of the data sets that tell the two apart, two at least; it "
     "does not pay where the second has; else it depends on the data set, and where fewer than two "
-    "tell them apart it is open. Changed after a first outcome of D07: a model behind compensations "
-    "counts among all others only, so that filters meet with the same readings."
+    "tell them apart it is open. Changed after a first outcome of D07: a model behind "
+    "compensations counts among all others only, so that filters meet with the same readings."
 )
 
 
