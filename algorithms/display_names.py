@@ -58,6 +58,7 @@ DISPLAY_NAMES: Mapping[str, str] = {
     "angular-loss": "Angular loss compensation",
     "computed-earth": "Computed albedo compensation",
     "computed-earth-balance": "Computed albedo compensation of quadrants",
+    "estimated-earth": "Estimated albedo compensation",
     "maximum-currents": "Maximum current compensation of albedo",
     "optical": "Refraction compensation",
     "pinhole-shadow": "Shadow compensation of a round hole",

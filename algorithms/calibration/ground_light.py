@@ -40,16 +40,25 @@ def ground_light(
         Irradiance from there across the direction, in units of sunlight.
     """
     sight, solid_angle = _lines_of_sight(altitude_km)
-    reach = EARTH_RADIUS_KM / (EARTH_RADIUS_KM + altitude_km)
-    # in units of the distance to the Earth's centre
-    distance = sight[:, 2] - np.sqrt(np.maximum(sight[:, 2] ** 2 - 1.0 + reach**2, 0.0))
-    ground = (distance[:, None] * sight - [0.0, 0.0, 1.0]) / reach
+    ground = ground_points(altitude_km)
     for start in range(0, len(sun), _BATCH):
         rows = slice(start, start + _BATCH)
         frame = _frames(sun[rows], nadir[rows])
         local_sun = np.einsum("nij,nj->ni", frame, sun[rows])
         light = np.maximum(local_sun @ ground.T, 0.0) * (solid_angle / math.pi)
         yield rows, np.einsum("nij,li->nlj", frame, sight), light
+
+
+def ground_points(altitude_km: float) -> Floats:
+    """Return the ground (J, 3) that the lines of sight meet, from Earth's centre; nadir is z.
+
+    In units of the Earth's radius.
+    """
+    sight, _ = _lines_of_sight(altitude_km)
+    reach = EARTH_RADIUS_KM / (EARTH_RADIUS_KM + altitude_km)
+    # in units of the distance to the Earth's centre
+    distance = sight[:, 2] - np.sqrt(np.maximum(sight[:, 2] ** 2 - 1.0 + reach**2, 0.0))
+    return np.asarray((distance[:, None] * sight - [0.0, 0.0, 1.0]) / reach)
 
 
 def _lines_of_sight(altitude_km: float) -> tuple[Floats, Floats]:

@@ -168,7 +168,9 @@ class BuiltMask(ForwardModel):
         which, index = np.unique(holes[frames, columns], return_inverse=True)
         seen = Sightings(spots[frames, columns], frames, index)
         if len(which) == 0:
-            raise UnusableDataError(f"{self.about.name}: no spot of the calibration is told")
+            raise UnusableDataError(
+                f"{self.about.name}: no spot of the calibration is known for its opening"
+            )
         for _ in range(_ROUNDS):
             moved = self.displacements(spots, holes, places)
             known = np.isfinite(moved[:, 0])

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.compensated import CalibratedCompensation
 from algorithms.calibration.cube_currents import SURELY_LIT
+from algorithms.calibration.face_sunlight import KNOTS, LIT, sunlight
 from algorithms.calibration.ground_light import ground_light
 from algorithms.contract import AboutCompensation, FeatureKind, Floats, UnusableDataError
 from algorithms.documented import documented
@@ -22,16 +23,8 @@ from algorithms.row_arithmetic import normalise
 ITERATIONS = 4
 """Steps from the direction that all light has to the Sun's; each leaves a share of the Earth's."""
 
-#: Steps of least squares to the sunlight.
-_STEPS = 4
-#: Cosine to the other side up to which a face may still see the Sun.
-_PAST = 0.02
-#: Cosines of incidence at which a response is learnt.
-_KNOTS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0])
 #: Weight of what is expected of a bend, none, against that of all samples.
 _SMALL = 1e-2
-#: Share of full sunlight from which a face is lit by the Sun: the Earth alone gives less.
-_LIT = 0.2
 
 
 @documented
@@ -137,7 +130,7 @@ class ComputedEarth(CalibratedCompensation):
         normals = np.asarray(self.face_normals, dtype=np.float64)
         cosines = np.maximum(sun @ normals.T, 0.0)
         lit = np.flatnonzero((cosines > SURELY_LIT).any(axis=0))
-        response, reflectance, one_sun = _KNOTS, 0.0, np.zeros(0)
+        response, reflectance, one_sun = KNOTS, 0.0, np.zeros(0)
         for _ in range(2 if len(lit) else 0):
             earth = earth_light(sun, context["nadir"], normals, self.altitude_km, response)
             solved = np.array([_fitted(features[:, k], cosines[:, k], earth[:, k]) for k in lit])
@@ -147,7 +140,7 @@ class ComputedEarth(CalibratedCompensation):
             # one kind of face and one ground: what noise gives one of them is not the others'
             relative = solved / one_sun[:, None]
             reflectance = max(float(np.median(relative[:, 2])), 0.0)
-            found = relative[:, 1:2] * _KNOTS + np.pad(relative[:, 3:], ((0, 0), (1, 0)))
+            found = relative[:, 1:2] * KNOTS + np.pad(relative[:, 3:], ((0, 0), (1, 0)))
             rising = np.maximum.accumulate(np.median(found, axis=0))
             response = rising / rising[-1]
         if not (len(one_sun) and (one_sun > 0).all()):
@@ -164,11 +157,11 @@ class ComputedEarth(CalibratedCompensation):
         """Signals (N, K) of the Sun alone."""
         normals = np.asarray(self.face_normals, dtype=np.float64)
         relative = (features - self.level_) / self.one_sun_
-        sunlit = np.flatnonzero(relative.max(axis=1) > _LIT)
+        sunlit = np.flatnonzero(relative.max(axis=1) > LIT)
         given, nadir = features.copy(), context["nadir"][sunlit]
         light = np.zeros((len(sunlit), len(normals)))
         for _ in range(ITERATIONS):
-            sun = _sunlight(relative[sunlit] - light, normals, self.response_)
+            sun = sunlight(relative[sunlit] - light, normals, self.response_)
             # what warms the faces, or brings them nearer to the Sun, changes all light alike
             level = np.sqrt((sun**2).sum(axis=1, keepdims=True))
             light = (self.reflectance_ * level) * earth_light(
@@ -183,42 +176,12 @@ def _fitted(signals: Floats, cosine: Floats, earth: Floats) -> Floats:
 
     A weak prior of zero holds bends that no sample determines.
     """
-    bends = np.column_stack([np.interp(cosine, _KNOTS, row) for row in np.eye(len(_KNOTS))[1:]])
+    bends = np.column_stack([np.interp(cosine, KNOTS, row) for row in np.eye(len(KNOTS))[1:]])
     matrix = np.column_stack([np.ones(len(cosine)), cosine, earth, bends])
     small = np.zeros((bends.shape[1], matrix.shape[1]))
     small[:, 3:] = _SMALL * math.sqrt(len(cosine)) * np.eye(bends.shape[1])
     right = np.concatenate([signals, np.zeros(len(small))])
     return np.asarray(np.linalg.lstsq(np.vstack([matrix, small]), right, rcond=None)[0])
-
-
-def _sunlight(signals: Floats, normals: Floats, response: Floats) -> Floats:
-    """Sunlight (N, 3) by least squares, of signals (N, K) in units of one Sun.
-
-    First by the faces that are surely lit, then by all that look towards what was found.
-    """
-    surely = (signals > _LIT / 2.0).astype(np.float64)
-    cosine = surely * np.interp(signals, response, _KNOTS)
-    sun = _stepped(np.zeros((len(signals), 3)), surely, cosine, normals)
-    for _ in range(_STEPS):
-        cosine = sun @ normals.T
-        c = np.clip(cosine, 0.0, 1.0)
-        # a face that looks a little past the Sun may look at it after the step
-        slope = np.where(cosine > -_PAST, _slope(c, response), 0.0)
-        sun = _stepped(sun, slope, signals - np.interp(c, _KNOTS, response), normals)
-    return sun
-
-
-def _stepped(sun: Floats, slope: Floats, left: Floats, normals: Floats) -> Floats:
-    """Sunlight (N, 3) after a step of Gauss and Newton; where no face tells, it stays."""
-    matrix = np.einsum("nk,ki,kj->nij", slope**2, normals, normals) + 1e-4 * np.eye(3)
-    right = np.einsum("nk,ki->ni", slope * left, normals)
-    return np.asarray(sun + np.linalg.solve(matrix, right[:, :, None])[:, :, 0])
-
-
-def _slope(cosine: Floats, response: Floats) -> Floats:
-    """Slope of a response at cosines of any shape."""
-    steps = np.diff(response) / np.diff(_KNOTS)
-    return np.asarray(steps[np.clip(np.searchsorted(_KNOTS, cosine) - 1, 0, len(steps) - 1)])
 
 
 def earth_light(
@@ -251,6 +214,6 @@ def earth_light(
     for rows, directions, light in ground_light(sun, nadir, altitude_km):
         seen = np.maximum(directions @ faces.T, 0.0)
         if response is not None:
-            seen = np.interp(seen, _KNOTS, response)
+            seen = np.interp(seen, KNOTS, response)
         out[rows] = np.einsum("nj,njk->nk", light, seen)
     return out

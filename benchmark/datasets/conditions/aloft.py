@@ -10,6 +10,7 @@ from typing import Any
 from benchmark.datasets.conditions.since_calibration import RECALIBRATED
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.drift import ThermalCycle
+from benchmark.simulator.light.clouds import CloudyEarth
 from benchmark.simulator.light.environment import Earth
 
 #: 40 K warmer than usual throughout.
@@ -48,7 +49,7 @@ def conditions_aloft(
     texts : mapping of str to str
         Descriptions by condition: of ``nominal``, ``stable`` and any other that is its own.
     black_earth : bool
-        Whether there is a condition without light from the Earth.
+        Whether there are conditions without light from the Earth, and with clouds.
     """
     noise = f"The nominal sensor with the noise of {ground.name}'s"
     said = {
@@ -63,6 +64,14 @@ def conditions_aloft(
     found = {"nominal": seen(said["nominal"], nominal)}
     if black_earth:
         found["no-albedo"] = seen("The nominal sensor over a black Earth.", nominal, earth=None)
+        clouded = CloudyEarth()
+        found["albedo-clouds"] = seen(
+            f"The nominal sensor over an Earth with clouds of {clouded.cloudy:.2f} over "
+            f"{clouded.clouds.cover:.0%} of ground of albedo {clouded.clouds.clear:.2f}, in "
+            "patches that stand still in the sensor's frame.",
+            nominal,
+            earth=clouded,
+        )
     for name in ("low-noise", "high-noise", "misaligned"):
         found[name] = seen(said[name], flying(name))
     hot = replace(nominal, thermal=_WARM)

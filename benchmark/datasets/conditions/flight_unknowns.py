@@ -205,7 +205,6 @@ def _head_slopes(sensor: object, head: AssemblyDrift, scene: TimedScene) -> Floa
     By its five degrees of freedom on the first day and by its rates, of which each is as large as
     its spread.
     """
-    one = np.ones(len(scene))
     height = height_mm(sensor)
     if height is None:
         raise TypeError(f"a head that drifts must have a height; got {type(sensor).__name__}")
@@ -220,7 +219,7 @@ def _head_slopes(sensor: object, head: AssemblyDrift, scene: TimedScene) -> Floa
     moves = []
     for name, rate in _rates(head):
         unit = AssemblyDrift(**{name: rate}).moved(scene.temperature_k, scene.age_years)
-        moves.append(np.einsum("npk,nk->np", still, one[:, None] * unit / _STANDS))
+        moves.append(np.einsum("npk,nk->np", still, unit / _STANDS))
     return np.concatenate([still, np.stack(moves, axis=2)], axis=2)
 
 
