@@ -33,6 +33,8 @@ def only_beside(context: typer.Context, what: str, *allowed: str) -> None:
 
 def unfit(value: object, expected: str, nearest: str | None = None) -> str:
     """Say that a value does not fit, and what would; `nearest` is the valid value most like it."""
+    if value is None:
+        return f"expected {expected}"
     text = f"{value:g}" if isinstance(value, float) else str(value)
     try:
         number = float(text)

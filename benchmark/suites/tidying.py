@@ -64,7 +64,8 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
         scores=there[0] - len(record.scores),
         pins=there[1] - len(record.pins),
         kept=len(record.scores),
-        freed=before - _size(store),
+        # a store without results grows by what is written about the code
+        freed=max(before - _size(store), 0),
     )
 
 

@@ -47,6 +47,7 @@ def odd(tmp_path):
         ("claims --verdict refutd", 2, r"--verdict: .*'refutd'.*'refuted'"),
         ("claims --search=", 2, "--search: "),
         ("claims C04 --search x", 2, "an ID stands alone"),
+        ("compare", 2, "dataset: expected a data set with its pipelines"),
         ("compile x", 2, "got x"),
         ("recommend --mission leo", 2, "--mission: .*leo-cubesat"),
         ("recommend --detector CMOSS", 2, "--detector: .*CMOS"),
