@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from typer.testing import CliRunner
 
-from api.cli.command_line import app
 from api.figures.catalogue import MATRIX
 from registry.studies import facts
 from tests.api.conftest import Client
@@ -85,11 +83,6 @@ def test_sensors_and_comparisons_have_later_studies_only_where_asked(atlas: Clie
     assert f"/studies/{key}" in atlas.get(f"{page}?edition=all").text
 
 
-def test_search_finds_a_later_study_by_what_it_calls_itself(atlas: Client) -> None:
-    found = atlas.get("/v1/search?q=sparse submanifold").json()["items"]
-    assert found[0]["id"] == LATER
-
-
 def test_what_is_only_the_nearest_is_neither_stated_nor_complete(atlas: Client) -> None:
     document = atlas.get(f"/v1/studies/{LATER}").json()
     cell = next(each for each in document["attributes"] if each["attribute"] == "model")
@@ -98,36 +91,3 @@ def test_what_is_only_the_nearest_is_neither_stated_nor_complete(atlas: Client) 
     assert document["state"] != "complete"
     assert "model" in {gap["attribute"] for gap in document["gaps"]}
     assert {pipeline["basis"]["model"] for pipeline in document["pipelines"]} == {"defaulted"}
-
-
-def test_editions_are_cited_by_version(atlas: Client) -> None:
-    survey, extension = atlas.get("/v1/editions").json()["items"]
-    assert (survey["name"], survey["studies"]) == ("survey", 129)
-    assert extension["studies"] == len(later())
-    years = [int(facts("all").studies[key].year) for key in later()]
-    mapped = [int(one.year) for one in facts("survey").studies.values() if one.year]
-    assert survey["last_year"] == max(mapped)
-    assert extension["later"] == sum(year > max(mapped) for year in years)
-    assert 0 < extension["later"] < len(years), "some are of the survey's years, some later"
-    shown = atlas.get("/studies?edition=all").text
-    assert f"{len(years)} it does not map ({len(years) - extension['later']} up to 2024" in shown
-    assert survey["version"] in atlas.get("/studies/Chang2008").text
-    assert extension["version"] in atlas.get(f"/studies/{LATER}").text
-    assert [row["version"] for row in atlas.table("/v1/editions")] == [
-        survey["version"],
-        extension["version"],
-    ]
-
-
-@pytest.mark.parametrize("command", [["studies"], ["recommend", "--include", "paths"]])
-def test_the_command_line_takes_an_edition(command: list[str]) -> None:
-    def keys(*more: str) -> str:
-        shown = CliRunner().invoke(app, [*command, *more, "--format", "json"])
-        assert shown.exit_code == 0, shown.stderr
-        return shown.stdout
-
-    def named(shown: str) -> set[str]:
-        return {key for key in later() if f'"{key}"' in shown}
-
-    assert not named(keys())
-    assert named(keys("--edition", "all"))

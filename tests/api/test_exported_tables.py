@@ -9,11 +9,6 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import quote, urlencode
 
-import pytest
-from typer.testing import CliRunner
-
-from api.cli import command_line
-from api.cli.command_line import COMMANDS, app
 from files.csv_writing import escape_formulas
 from registry.taxonomy import NONE_STATED
 from tests.api.conftest import Client
@@ -112,38 +107,3 @@ def with_format(command, path):
         yield path, command
     for name, member in getattr(command, "commands", {}).items():
         yield from with_format(member, (*path, name))
-
-
-def test_every_command_with_a_table_takes_safe() -> None:
-    found = [
-        (path, command)
-        for name in COMMANDS
-        for path, command in with_format(command_line.load(name), (name,))
-    ]
-    assert len(found) > 25
-    for path, command in found:
-        assert any("--safe" in parameter.opts for parameter in command.params), path
-
-
-def run(*arguments: str) -> tuple[int, bytes, str]:
-    ended = CliRunner().invoke(app, arguments)
-    return ended.exit_code, ended.stdout_bytes, ended.stderr
-
-
-@pytest.mark.parametrize("form", [(), ("--format", "json")])
-def test_safe_without_csv_is_refused(form: tuple[str, ...]) -> None:
-    code, printed, said = run("dataset", "list", "--safe", *form)
-    assert (code, printed) == (2, b"")
-    assert "--format csv" in said
-
-
-def test_an_address_and_a_file_are_safe_too(tmp_path) -> None:
-    code, printed, _ = run("get", "/v1/taxonomy", "--format", "csv", "--safe")
-    assert code == 0
-    assert printed.startswith(b"attribute,value,")
-    code, _, said = run(
-        *("dataset", "errors", "pd-slit", "--unit", "0"),
-        *("--out", str(tmp_path / "errors.csv"), "--safe"),
-    )
-    assert code == 0, said
-    assert (tmp_path / "errors.csv").read_text().startswith("extractor,model,")

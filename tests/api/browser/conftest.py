@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
-from playwright.sync_api import Browser, expect, sync_playwright
 
 from tests.api.browser.visiting import NARROW, PATIENCE_MS, WIDE, Visit
 from tests.api.conftest import Client
+
+if TYPE_CHECKING:  # loaded by those alone who open a page
+    from playwright.sync_api import Browser
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 QUIET = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"]
@@ -25,6 +27,8 @@ def address(atlas: Client, serve: Callable[..., Any]) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
+    from playwright.sync_api import expect, sync_playwright
+
     found = next(filter(None, map(shutil.which, NAMES)), None)
     if found is None:
         reason = f"no browser ({', '.join(NAMES)} on the PATH): install chromium to test the page"

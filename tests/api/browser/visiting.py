@@ -7,13 +7,14 @@ import os
 import subprocess
 import sys
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 from urllib.request import urlopen
 
-from playwright.sync_api import ConsoleMessage, Locator, Page, expect
-
 from api.guide import site
+
+if TYPE_CHECKING:  # loaded by those alone who open a page
+    from playwright.sync_api import ConsoleMessage, Locator, Page
 
 WIDE, NARROW = (1280, 900), (390, 844)
 #: Longer than a machine under load ever takes: what does not come at all is what fails.
@@ -51,6 +52,8 @@ class Visit:
 
     def flow_nodes(self) -> set[str]:
         """Labels of the nodes that the live flow shows, with their numbers."""
+        from playwright.sync_api import expect
+
         flow = self.page.locator("#flow .live-figure")
         flow.scroll_into_view_if_needed()
         expect(flow).to_have_attribute("data-live", "true")

@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
-from typer.testing import CliRunner
 
 from algorithms.discovery import discover_extractors
-from api.cli.command_line import app
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
-from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.experiments.sweeps import Sweeps
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.running.experiment import update
 from benchmark.sweeps.record import swept as stored_rows
-
-PROPERTIES = tuple(DEFINITIONS)
-
-
-def run(*arguments):
-    return CliRunner(env={"COLUMNS": "140"}).invoke(app, ["assess", *arguments])
 
 
 @pytest.fixture(scope="module")
@@ -38,22 +27,6 @@ def published(tmp_path_factory):
 @pytest.fixture(scope="module")
 def swept(published, client_of):
     return client_of(create_app(Knowledge(Measurements(published))))
-
-
-def test_the_table_has_nineteen_rows_with_both_scores_and_counts():
-    shown = run()
-    assert shown.exit_code == 0
-    document = json.loads(run("--format", "json").stdout)
-    assert sum(document["totals"].values()) == 19 * 21
-    methods = [method["method"] for method in document["methods"]]
-    assert len(methods) == 19
-    lines = shown.stdout.splitlines()
-    for method in methods:
-        (line,) = [text for text in lines if text.startswith(f"{method}  ")]
-        counts = [int(n) for n in line.split()[-5:]]
-        assert sum(counts) == 21
-    assert all(name in shown.stdout for name in PROPERTIES)
-    assert "agrees:" in shown.stderr
 
 
 def test_sweeps_are_served_page_by_page_and_filtered(swept, published):

@@ -15,9 +15,7 @@ from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
 from benchmark import datasets
 from benchmark.contract import Cell
-from benchmark.datasets.coverage import coverage
 from benchmark.results.samples import Directions, SampleErrors
-from benchmark.results.store import Store
 
 CUBE = "pd-maskless-cube"
 APERTURE = "cmos-single-aperture"
@@ -67,46 +65,6 @@ def test_verify_passes_then_names_what_was_changed(made, tmp_path):
     (row,) = csv.DictReader(io.StringIO(shown.stdout))
     assert row["file"] == "nominal/test.npz"
     assert row["problem"].startswith("SHA-256 is")
-
-
-def test_coverage_is_the_table_in_every_format():
-    found = coverage()
-    document = json.loads(sunatlas("coverage", "--format", "json").stdout)
-    assert document == json.loads(json.dumps(found.to_dict()))
-    rows = list(csv.DictReader(io.StringIO(sunatlas("coverage", "--format", "csv").stdout)))
-    assert [(r["detector"], r["mask"]) for r in rows] == [
-        (pair.detector, pair.mask) for pair in found.pairs
-    ]
-    assert [r["studies"] for r in rows] == ["; ".join(pair.studies) for pair in found.pairs]
-    shown = sunatlas("coverage")
-    assert "10 of 10 detectors and 10" in shown.stderr
-    assert "pd-maskless-cube" in shown.stdout
-
-
-@pytest.fixture
-def published(tmp_path, monkeypatch):
-    monkeypatch.setattr(dataset, "PUBLISHED", tmp_path)
-    return Store(tmp_path)
-
-
-@pytest.mark.slow
-def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
-    shown = sunatlas("pin", "oi-maskless-pyramid", "--workers", 1)
-    assert shown.exit_code == 0, shown.stderr
-    conditions = datasets.get("oi-maskless-pyramid").conditions
-    assert shown.stderr.startswith(f"{len(conditions)} conditions pinned in ")
-    assert {place[:2] for place in published.pins()} == {
-        ("oi-maskless-pyramid", condition) for condition in conditions
-    }
-    held = sunatlas("pin", "oi-maskless-pyramid", "--check", "--workers", 1)
-    assert (held.exit_code, held.stderr) == (0, "every pin holds: generated again\n")
-    path = published.pins_path
-    first = next(iter(published.pins().values()))
-    path.write_text(path.read_text().replace(first.data_hash, "0" * 32))
-    shown = sunatlas("pin", "oi-maskless-pyramid", "--check", "--workers", 1)
-    assert shown.exit_code == 1
-    where = " ".join(first.place)
-    assert shown.stdout.startswith(f"{where}: data_hash {first.data_hash}, pinned 0000")
 
 
 @pytest.fixture

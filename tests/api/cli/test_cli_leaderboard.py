@@ -9,8 +9,6 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.cli.findings import NAMES
-from benchmark.leaderboard.findings import KEYS
 
 COLUMNS, LINES = 80, 45
 
@@ -68,10 +66,3 @@ def test_findings_are_those_of_the_readme_and_come_with_their_pairs():
         assert f"{place}. {title}" in said
     pairs = list(csv.DictReader(io.StringIO(sunatlas("findings", named[0], "--format", "csv"))))
     assert len(pairs) >= max(row["n"] for row in estimates if row["finding"] == named[0])
-
-
-def test_a_finding_that_there_is_not_is_refused():
-    done = CliRunner().invoke(app, ["leaderboard", "findings", "albedo"])
-    assert done.exit_code == 2
-    assert "no finding 'albedo'; expected one of methods, constants" in done.stderr
-    assert NAMES == KEYS

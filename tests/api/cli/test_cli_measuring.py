@@ -1,7 +1,6 @@
 """`sunatlas run`, `benchmark` and `leaderboard`: measured once, read afterwards, checked."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -9,16 +8,10 @@ from typer.testing import CliRunner
 
 from api.cli import measuring
 from api.cli.command_line import app
-from api.cli.commands import leaderboard
 from api.user_cache import user_cache
-from benchmark.contract import Cell
 from benchmark.plan.combinations import scorable_plan
-from benchmark.plan.parts import installed_parts
-from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue
 from registry.resolution import resolve
-
-CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
 
 
 def sunatlas(*arguments):
@@ -79,18 +72,6 @@ def test_a_run_that_finds_nothing_published_measures_once(unpublished):
     assert again["scores"] == measured["scores"]
 
 
-@pytest.mark.slow
-def test_what_is_published_is_read_there():
-    found = json.loads(sunatlas("benchmark", *CHEAP, "--format", "json").stdout)
-    published = Store(PUBLISHED).scores()
-    assert found["scores"]
-    for row in found["scores"]:
-        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
-        assert {name: row[name] for name in published[cell]} == published[cell]
-    assert found["sources"]["published"] == len(found["scores"])
-    assert found["sources"]["measured"] == 0
-
-
 @pytest.mark.parametrize(
     ("environment", "expected"),
     [
@@ -108,41 +89,3 @@ def test_the_working_store_is_where_it_is_said_to_be(monkeypatch, environment, e
 
 
 # ---- leaderboard
-
-
-@pytest.fixture
-def published(tmp_path, monkeypatch):
-    """A copy of the published results, free to be altered."""
-    directory = tmp_path / "published"
-    shutil.copytree(PUBLISHED, directory, ignore=shutil.ignore_patterns(".sunatlas"))
-    monkeypatch.setattr(leaderboard, "PUBLISHED", directory)
-    return directory
-
-
-def listed(*arguments):
-    shown = sunatlas("leaderboard", *arguments, "--format", "json")
-    assert shown.exit_code == 0, shown.stderr
-    return json.loads(shown.stdout)["items"]
-
-
-def test_the_leaderboard_is_shown_and_nothing_is_measured(tmp_path, monkeypatch):
-    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path / "working"))
-    best = listed("--each")
-    assert {row["rank"] for row in best} == {1}
-    assert {row["condition"] for row in best} == {"nominal"}
-    assert {row["dataset"] for row in best} == set(installed_parts().presets)
-    assert all(row["latency_us"] > 0 for row in best)
-    whole = listed("--dataset", "ccd-orbit", "--condition", "stable")
-    assert {(row["dataset"], row["condition"]) for row in whole} == {("ccd-orbit", "stable")}
-    for part in (True, False):
-        ranks = [r["rank"] for r in whole if r["rank"] and r["best_of_extractor"] is part]
-        assert ranks == sorted(ranks)
-    first = [row["best_of_extractor"] for row in whole]
-    assert first == sorted(first, reverse=True)
-    assert not (tmp_path / "working").exists()
-
-
-@pytest.mark.slow
-def test_the_committed_leaderboard_is_what_its_code_gives(published):
-    shown = sunatlas("leaderboard", "--check", "--stored")
-    assert (shown.exit_code, shown.stdout) == (0, ""), shown.stdout

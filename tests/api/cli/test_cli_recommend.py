@@ -69,22 +69,3 @@ def test_each_architecture_shows_its_evidence_in_lines_of_its_own(atlas):
             assert f"{one['requirement']}: reported {one['reported']}" in said
         for one in architecture["advised"]:
             assert f"{one['value']}: {one['how']} ({one['section_name']})" in said
-
-
-def test_what_cannot_be_met_names_the_requirement_and_what_would_help(atlas):
-    impossible = {"detector": "Event", "max_error_deg": 1e-9}
-    blocked = atlas.get("/v1/recommendations", params=impossible).json()["blocked"]
-    shown = sunatlas(*options(impossible))
-    assert shown.exit_code == 0
-    assert shown.stdout.startswith("0 architectures")
-    said = words(shown.stderr)
-    assert f"{blocked['constraint']}: {words(blocked['detail'])}" in said
-    assert blocked["relaxations"]
-    for relaxation in blocked["relaxations"]:
-        assert f"- {words(relaxation['words'])}: {relaxation['architectures']} arch" in said
-
-
-def test_no_calibration_is_called_none():
-    shown = words(text("--tolerate", "ageing", "--include", "calibrations"))
-    assert "None +" not in shown
-    assert "+ None" not in shown

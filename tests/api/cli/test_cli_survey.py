@@ -32,11 +32,6 @@ def copy(tmp_path):
     return directory
 
 
-def rows_of(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.reader(file))
-
-
 def write(path, rows):
     stream = io.StringIO(newline="")
     csv.writer(stream, lineterminator="\n").writerows(rows)
@@ -117,36 +112,6 @@ def test_an_import_shows_the_mapping_and_the_cells_and_writes_nothing(copy, thei
     assert (copy / "attributes.csv").read_bytes() == before
     table = survey("import", theirs, "--map", "Sensor technology=detector", "--data", copy)
     assert "Nothing written; --apply writes 1 cells." in table.stdout
-
-
-def test_a_cell_that_cannot_be_read_is_named_and_nothing_is_written(copy, theirs):
-    rows = rows_of(theirs)
-    rows[1][1] = "qwertyuiop"
-    write(theirs, rows)
-    before = (copy / "attributes.csv").read_bytes()
-    mapped = ("--map", "Sensor technology=detector", "--data", copy)
-    for apply in ((), ("--apply",)):
-        shown = survey("import", theirs, *mapped, *apply)
-        assert shown.exit_code == 1
-        assert "row 2" in shown.stderr
-        assert "column Sensor technology" in shown.stderr
-        assert (copy / "attributes.csv").read_bytes() == before
-
-
-def test_a_bibliography_is_shown_and_then_taken_over(copy, tmp_path):
-    bib = tmp_path / "refs.bib"
-    bib.write_text("@article{Fan2017, author={Q. Fan}, title={A title}, year={2017}}\n", "utf-8")
-    before = (copy / "studies.csv").read_bytes()
-    shown = survey("import", bib, "--data", copy)
-    assert shown.exit_code == 0
-    assert "--apply writes 3 cells and 1" in shown.stdout
-    assert (copy / "studies.csv").read_bytes() == before
-    plan = json.loads(survey("import", bib, "--data", copy, "--format", "json").stdout)
-    assert [d["column"] for d in plan["differences"]] == ["title", "authors", "type"]
-    assert len(plan["missing"]) == 128
-    assert "written." in survey("import", bib, "--data", copy, "--apply").stdout
-    again = survey("import", bib, "--data", copy, "--apply")
-    assert "Nothing written." in again.stdout
 
 
 @pytest.mark.parametrize("key", ["Liebe2001", "Herman2025c"])

@@ -8,16 +8,12 @@ import subprocess
 import sys
 from contextlib import closing
 
-import numpy as np
 import pyarrow.parquet
 import pytest
 
 from api.deposit.database import sql_name
 from api.deposit.forms import CellError, write_other_forms
-from benchmark.datasets.export_verification import verify as verify_export
-from benchmark.results.store import PUBLISHED, Store
 from files.checksums import CHECKSUMS
-from tests.api.deposit.conftest import FRAMES
 from tests.api.deposit.test_deposit import files
 
 
@@ -135,27 +131,6 @@ def test_the_crate_names_every_file_with_its_checksum(built):
             found = entity.get(name, [])
             for reference in found if isinstance(found, list) else [found]:
                 assert reference["@id"] in graph
-
-
-@pytest.mark.slow
-def test_samples_are_whole_exports_of_every_split(built):
-    listed = rows(built.directory / "benchmark" / "frames.csv")
-    assert {(row["dataset"], row["split"]) for row in listed} == {
-        (name, split) for name in FRAMES for split in ("calibration", "test", "repeat")
-    }
-    pins = Store(PUBLISHED).pins()
-    for name in FRAMES:
-        folder = built.directory / "frames" / name
-        assert verify_export(folder) == []
-        assert json.loads((folder / "card.json").read_text("utf-8"))["name"] == name
-    for row in listed:
-        pin = pins[row["dataset"], row["condition"], row["split"]]
-        with np.load(built.directory / row["file"]) as arrays:
-            count = len(arrays["observations"])
-            assert arrays["sun"].shape == (count, 3)
-            assert arrays["bound_deg"].shape == (count,)
-        assert int(row["samples"]) == count == pin.n
-        assert row["data_hash"] == pin.data_hash
 
 
 def test_the_example_of_the_readme_runs_where_it_lies(bundle):

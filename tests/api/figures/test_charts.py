@@ -92,13 +92,6 @@ def test_every_chart_of_a_page_can_be_had_and_draws_nothing_unknown(
         assert "nan" not in re.sub(r"<(text|desc|title)\b.*?</\1>", "", drawn.text).lower()
 
 
-def test_a_figure_that_a_page_does_not_have_is_refused(atlas: Client) -> None:
-    refused = atlas.get("/claims/C04.nothing.svg")
-    assert refused.status_code == 404
-    (error,) = refused.json()["errors"]
-    assert (error["parameter"], error["expected"]) == ("figure", "trials")
-
-
 @pytest.mark.parametrize(
     ("make", "name"),
     [

@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from api.figures.catalogue import LEVELS, TITLES, evidence_map, figure
-from api.figures.statements import number_of_studies, statements
 from registry.studies import facts
 from registry.taxonomy import InvalidValueError
 from tests.api.figures.conftest import Values, read, studies_with
@@ -109,13 +108,6 @@ def test_a_matrix_counts_the_studies_with_both_and_shows_every_gap(
         assert row["count"] == len(keys)
 
 
-@pytest.mark.parametrize(("rows", "columns"), [("colour", "mask"), ("detector", "masks")])
-def test_an_unknown_attribute_is_refused_by_naming_those_there_are(rows: str, columns: str) -> None:
-    with pytest.raises(InvalidValueError) as caught:
-        evidence_map(facts(), {}, rows, columns)
-    assert all(level in str(caught.value) for level in facts().taxonomy.levels)
-
-
 def test_an_unknown_figure_is_refused_by_naming_those_there_are() -> None:
     with pytest.raises(InvalidValueError) as caught:
         figure("errors", facts())
@@ -141,15 +133,3 @@ def test_a_figure_has_sentences_and_columns_that_every_row_keeps(name: str) -> N
     assert all(tuple(row) == found.columns for row in found.rows)
     assert all(text.endswith(".") and "None" not in text for text in found.text)
     assert '"None' not in json.dumps([found.plotly["layout"], _labels(found.plotly["data"])])
-
-
-def test_statements_of_the_survey_stand_at_the_figure_of_their_attributes() -> None:
-    given: dict[str, Any] = {name: {s.id for s in statements(name)} for name in TITLES}
-    assert {f"F{n:02}" for n in range(1, 10)} == given["error"]
-    assert {"F21", "F23"} <= given["task"]
-    assert {"F46", "F47"} == given["models"]
-    assert given["publications"] == {"F51"}
-    verdicts = {s.id: s.verdict for name in TITLES for s in statements(name)}
-    assert verdicts["F51"] == "reproduced"
-    assert "128" in number_of_studies()
-    assert "129" in number_of_studies()

@@ -11,7 +11,6 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from api.figures.catalogue import TITLES
-from api.pages.measured_figures import LISTED
 from tests.api.conftest import Client
 
 PLOTLY = "application/vnd.plotly.v1+json"
@@ -51,12 +50,6 @@ def marks(part: Any) -> list[tuple[str, str]]:
         return [(part["text"], part["href"])]
     inside = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
     return [mark for one in inside for mark in marks(one)]
-
-
-def test_the_list_has_a_small_picture_of_every_figure(atlas: Client) -> None:
-    page = atlas.get("/figures", accept=HTML).text
-    shown = re.findall(r'<img class="thumbnail on-light" src="([^"]*)"', page)
-    assert shown == [f"{path}.svg" for path in (*PATHS, *(address for address, *_ in LISTED))]
 
 
 def test_plotly_is_served_from_here_packed_and_under_a_name_of_its_content(atlas: Client) -> None:

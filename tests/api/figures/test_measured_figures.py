@@ -68,17 +68,6 @@ def test_the_gap_says_what_the_answer_says(atlas: Any) -> None:
             assert min(row["study_rms_deg"] + row["product_rms_deg"]) <= min(smallest)
 
 
-def test_the_gap_counts_reports_that_are_worse_than_the_flight(atlas: Any) -> None:
-    found = document(atlas, GAP)
-    best = [
-        (min(row["study_rms_deg"] + row["product_rms_deg"]), row["flight_error_deg"])
-        for row in found["items"]
-        if row["flight_error_deg"] and row["study_rms_deg"] + row["product_rms_deg"]
-    ]
-    worse = sum(reported > flight for reported, flight in best)
-    assert f"Of {len(best)} with both, for {worse} the best reported sensor" in found["text"][1]
-
-
 @pytest.mark.parametrize("level", ["flight", "own", "bound", "reported"])
 def test_the_gap_is_ordered_by_a_level(atlas: Any, level: str) -> None:
     rows = document(atlas, f"{GAP}?level={level}")["items"]
@@ -92,15 +81,6 @@ def test_the_gap_is_ordered_by_a_level(atlas: Any, level: str) -> None:
     ]
     known = [value for value in values if value is not None]
     assert values == sorted(known) + [None] * (len(values) - len(known))
-
-
-def test_a_task_keeps_the_studies_that_have_it(atlas: Any) -> None:
-    rows = document(atlas, f"{GAP}?task=FOV&detector=CMOS")["items"]
-    named = {key for row in rows for key in row["studies"]}
-    every = document(atlas, "/v1/studies?task=FOV&limit=500")["items"]
-    assert named
-    assert named <= {study["key"] for study in every}
-    assert not any(row["products"] for row in rows)
 
 
 @pytest.mark.parametrize("across", ["field", "height", "poses", "latency", "mass"])
@@ -130,14 +110,6 @@ def test_errors_of_the_trade_off_are_those_of_the_leaderboard(atlas: Any) -> Non
             assert row["status"] != "dominated"
 
 
-def test_selected_rows_are_marked_and_drawn_again(atlas: Any) -> None:
-    name = "qpd-single-aperture:voltage-balance:qpd"
-    asked = f"{TRADE_OFF}?across=latency&select={name}"
-    (row,) = [row for row in document(atlas, asked)["items"] if row["selected"]]
-    assert row["name"] == name
-    assert marks(drawn(atlas, asked), "selected") == [(row["latency_us"], row["error_deg"])]
-
-
 def test_power_and_mass_are_those_that_products_state(atlas: Any) -> None:
     rows = {row["name"]: row for row in document(atlas, f"{TRADE_OFF}?across=mass")["items"]}
     stated = {one.name: one for one in built_sensors().values()}
@@ -162,15 +134,6 @@ def test_cells_of_the_heat_map_are_the_rows(atlas: Any) -> None:
             assert (row["state"], row["answered"] > 0) == ("measured", True)
         assert len(row["datasets"]) == row["data_sets"]
         assert (row["state"] == "untested") == (row["data_sets"] == 0)
-
-
-def test_unasked_the_conditions_of_many_data_sets_are_drawn(atlas: Any) -> None:
-    items = document(atlas, ROBUSTNESS)["items"]
-    of: dict[str, set[str]] = {}
-    for row in items:
-        of.setdefault(row["condition"], set()).update(row["datasets"])
-    (_, shaded) = drawn(atlas, ROBUSTNESS)
-    assert set(shaded.x) == {name for name, datasets in of.items() if len(datasets) >= 10}
 
 
 def test_a_cell_of_one_data_set_is_its_score(atlas: Any) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import re
 from collections import Counter
@@ -12,11 +11,11 @@ from xml.etree import ElementTree as ET
 import plotly.graph_objects as go
 import pytest
 
-from api.figures.catalogue import LEVELS, MATRIX, TITLES, evidence_map, figure
+from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.figure import Figure
 from api.figures.ordering import crossings, order
 from api.figures.picture import picture
-from api.figures.specification import DARK, faint, on_dark, specification
+from api.figures.specification import specification
 from api.service.knowledge import Knowledge
 from registry.studies import facts
 
@@ -63,20 +62,6 @@ def test_a_sankey_has_the_numbers_of_the_table(name: str, figures: Mapping[str, 
         assert list(mark["studies"]) == row["studies"]
 
 
-def test_no_nodes_of_a_sankey_meet_and_columns_stand_in_line(
-    figures: Mapping[str, Figure],
-) -> None:
-    for name in FLOWS:
-        found = figures[name].plotly
-        node = found["data"][0]["node"]
-        assert len(set(node["x"])) == len(LEVELS[name])
-        height = found["layout"]["height"]
-        for column in set(node["x"]):
-            middles = sorted(y for x, y in zip(node["x"], node["y"], strict=True) if x == column)
-            assert all(b - a > 14 / height for a, b in itertools.pairwise(middles))
-            assert 0 < middles[0] <= middles[-1] < 1
-
-
 def test_a_sunburst_has_the_memberships_of_the_table(figures: Mapping[str, Figure]) -> None:
     (trace,) = figures["models"].plotly["data"]
     drawn = dict(zip(trace["ids"], trace["values"], strict=True))
@@ -104,22 +89,6 @@ def test_bars_have_the_counts_of_the_table(figures: Mapping[str, Figure]) -> Non
     assert {one for one in table if one[0] == "year"} <= drawn.keys()
     left_out = [count for one, count in table.items() if one not in drawn and one[1]]
     assert set(left_out) == {1}
-
-
-def test_a_line_of_the_coordinates_has_the_values_of_its_row(
-    figures: Mapping[str, Figure],
-) -> None:
-    axes = ("year", "detector", "mask", "fov_deg", "accuracy_rms_deg")
-    drawn = Counter[tuple[object, ...]]()
-    for trace in figures["coordinates"].plotly["data"]:
-        marks = trace["customdata"]
-        for at in range(0, len(marks), 6):
-            assert marks[at + 5] is None
-            drawn[tuple(mark["value"] for mark in marks[at : at + 5])] += 1
-        for at, mark in enumerate(marks):
-            if mark and at % 6 == 3 and mark["value"] is not None:
-                assert trace["y"][at] == pytest.approx(0.12 + 0.88 * mark["value"] / 360)
-    assert drawn == Counter(tuple(r[one] for one in axes) for r in figures["coordinates"].rows)
 
 
 def test_cells_of_the_matrix_have_its_counts_and_states(figures: Mapping[str, Figure]) -> None:
@@ -161,24 +130,9 @@ def test_a_picture_is_the_same_each_time_and_says_what_it_shows(
     assert not re.search(r"(?<![,(:])#[0-9a-f]{6}(?![;}])", drawn.split("</style>", 1)[1])
 
 
-def test_a_colour_of_the_atlas_has_one_for_dark_pages_and_another_none() -> None:
-    for light, dark in DARK.items():
-        assert on_dark(light) == dark
-        assert on_dark(faint(light, 0.3)) == faint(dark, 0.3)
-    assert on_dark("#123456") == "#123456"
-    made = specification([{"type": "bar", "marker": {"color": "#2f6aa8"}}], height=100)
-    assert made["layout"]["meta"]["dark"]["#2f6aa8"] == DARK["#2f6aa8"]
-
-
 def test_a_trace_that_cannot_be_drawn_is_refused() -> None:
     with pytest.raises(ValueError, match="violin"):
         picture(specification([{"type": "violin"}], height=100), "No picture")
-
-
-def test_nothing_left_is_said_in_the_picture() -> None:
-    empty = figure("error", facts(), {"detector": "OI"})
-    assert empty.plotly["data"] == []
-    assert "Nothing to show." in picture(empty.plotly, empty.title)
 
 
 def test_nodes_are_ordered_so_that_fewer_bands_cross() -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import base64
 import gzip
 import hashlib
 import io
 import json
-import re
 import subprocess
 import sys
 import tempfile
@@ -84,30 +82,6 @@ def test_the_page_takes_a_form_without_a_script_and_keeps_nothing(atlas, tmp_pat
     assert "2, column y_px" in refused.text
     assert list(tmp_path.iterdir()) == []
     assert refused.headers["content-type"].startswith("text/html")
-
-
-@pytest.mark.slow
-def test_the_page_has_the_report_and_every_file_in_one_archive(atlas):
-    made = atlas.post("/calibrate", data={"sample": "yes", "model": "homography"}, files={"x": ""})
-    assert made.status_code == 200, made.text[:2000]
-    assert made.headers["cache-control"] == "no-store"
-    assert "Models compared" in made.text
-    archive = re.search(r"data:application/zip;base64,([^\"]+)", made.text)
-    assert archive is not None
-    with zipfile.ZipFile(io.BytesIO(base64.b64decode(archive[1]))) as packed:
-        names = packed.namelist()
-        listed = packed.read("sun_sensor.sha256").decode().splitlines()
-        for digest, _, name in (line.partition("  ") for line in listed):
-            assert hashlib.sha256(packed.read(name)).hexdigest() == digest
-    assert {line.partition("  ")[2] for line in listed} == {*names} - {"sun_sensor.sha256"}
-
-
-def test_the_sample_is_a_file_of_its_own(atlas):
-    sample = atlas.get("/calibrate/sample.csv")
-    assert sample.headers["content-type"].startswith("text/csv")
-    rows = np.loadtxt(io.StringIO(sample.text), delimiter=",", skiprows=1)
-    assert rows.shape == (225, 4)
-    assert "/calibrate/sample.csv" in atlas.get("/calibrate").text
 
 
 def test_columns_are_previewed_with_role_unit_and_first_values(atlas):

@@ -37,16 +37,6 @@ def test_a_selection_is_cited_by_format_and_by_accept_alike(atlas, form):
     assert atlas.get(url, accept=FORMS[form]).content == named.content
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_every_identified_study_and_one_alone_are_cited(atlas, form):
-    every = atlas.get("/v1/studies").json()["items"]
-    titled = {study["key"] for study in every if study["title"]}
-    assert keys(form, atlas.get(f"/v1/studies?format={form}").text) == titled
-    one = atlas.get(f"/v1/studies/Liebe2002?format={form}")
-    assert keys(form, one.text) == {"Liebe2002"}
-    assert 'filename="Liebe2002.' in one.headers["content-disposition"]
-
-
 def test_keys_select_studies(atlas):
     found = atlas.get("/v1/studies?key=Liebe2002&key=Wei2013&detector=CMOS").json()["items"]
     assert {study["key"] for study in found} <= {"Liebe2002", "Wei2013"}

@@ -10,7 +10,7 @@ from api.service.measurements import Measurements
 from benchmark import datasets
 from benchmark.datasets.pins import Pin
 from benchmark.results.components import Components
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import Store
 
 NAME = "cmos-single-aperture"
 
@@ -28,27 +28,6 @@ def pinned(tmp_path_factory, client_of):
     ]
     Store(directory).write({}, pins, Components())
     return client_of(create_app(Knowledge(Measurements(directory))))
-
-
-@pytest.mark.slow
-def test_the_card_is_the_preset_s_with_bounds_hashes_and_the_picture(atlas):
-    card = atlas.get(f"/v1/datasets/{NAME}").json()
-    preset = datasets.get(NAME)
-    own = preset.card()
-    assert card["setups"] == own["conditions"]
-    assert card["conditions"] == list(preset.conditions)
-    for name in ("geometry", "seeds", "regime", "splits", "units", "description"):
-        assert card[name] == own[name]
-    assert set(card["bounds"]) == set(preset.conditions)
-    assert atlas.get(card["preview"]).headers["content-type"] == "image/png"
-    pins = Store(PUBLISHED).pins()
-    assert [(row["condition"], row["split"]) for row in card["data"]] == [
-        (condition, split)
-        for condition in preset.conditions
-        for split in ("calibration", "test", "repeat")
-    ]
-    for row in card["data"]:
-        assert row["data_hash"] == pins[NAME, row["condition"], row["split"]].data_hash
 
 
 def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):

@@ -11,13 +11,6 @@ from registry.taxonomy import taxonomy_row
 
 TABLES = Path(survey_data.__file__).parent
 ATTRIBUTES = ("task", "error", "accuracy", "detector", "mask", "model", "extractor")
-CHARTS = {
-    "error": ("error", "detector", "mask"),
-    "performance": ("accuracy", "mask", "model_category"),
-    "cross-analysis": ("task", "detector", "mask", "model", "extractor"),
-    "task": ("task", "detector", "mask"),
-    "model-sunburst": ("model_category", "calibration", "model"),
-}
 
 
 def read(name):
@@ -40,13 +33,6 @@ def values():
         if attribute == "extractor":
             found[row["study"]]["extractor_family"].add(category["extractor", value])
     return found
-
-
-def test_all_129_studies_are_served_once(atlas, values):
-    answer = atlas.get("/v1/studies?limit=500").json()
-    assert answer["total"] == 129
-    assert answer["next"] is None
-    assert [item["key"] for item in answer["items"]] == list(values)
 
 
 @pytest.mark.parametrize("attribute", ATTRIBUTES)
@@ -123,16 +109,3 @@ def test_the_taxonomy_is_the_table(atlas):
     assert [{k: v for k, v in row.items() if k != "section_name"} for row in flat] == expected
     exported = [{k: "" if v is None else v for k, v in taxonomy_row(row).items()} for row in flat]
     assert atlas.table("/v1/taxonomy") == exported  # "None" is a value, and no empty cell
-
-
-def test_nodes_of_links_exist_and_csv_is_the_links(atlas):
-    for chart in CHARTS:
-        answer = atlas.get(f"/v1/flows/{chart}").json()
-        ids = {node["id"] for node in answer["nodes"]}
-        assert {end for link in answer["links"] for end in (link["source"], link["target"])} <= ids
-        rows = atlas.table(f"/v1/flows/{chart}")
-        assert [
-            {"source": link["source"], "target": link["target"], "value": f"{link['value']}",
-             "studies": "; ".join(link["studies"])}
-            for link in answer["links"]
-        ] == rows  # fmt: skip

@@ -180,19 +180,6 @@ def test_the_leaderboard_ranks_by_the_error_over_a_part_of_the_field(measured):
     assert "20" in refused.json()["errors"][0]["expected"]
 
 
-def test_the_leaderboard_ranks_by_the_field_that_keeps_an_error(measured):
-    address = f"/v1/leaderboard/{CMOS}?condition=nominal&max_error_deg="
-    board = measured.walk(f"{address}0.03")
-    assert [(r["rank"], r["extractor"], r["model"], r["widest_field_deg"]) for r in board] == [
-        (1, "bctm", "lsq", 10),
-        (None, "bctm", "spm", None),
-        (None, "bcm", "spm", None),
-        (None, "tm", "spm", None),  # too few answers
-        (None, "bcm", "lsq", None),
-    ]
-    assert measured.get(f"{address}-1").status_code == 422
-
-
 DESIGN = "detector=CMOS&mask=Single-Ap.&model=SPM&extractor=BCTM"
 
 

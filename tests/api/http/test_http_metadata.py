@@ -1,4 +1,7 @@
-"""What machines find: Croissant, schema.org, Signposting, by the libraries that read them."""
+"""What machines find: Croissant, schema.org, Signposting, by the libraries that read them.
+
+Those are imported where they are used: seconds for a worker that has none of these tests.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-import mlcroissant
-import msgspec_schemaorg.models as schema_org
 import pytest
-import rdflib
-from signposting import find_signposting_http, find_signposting_http_link
 
 from api.metadata.signposting import landing_of_study
 from benchmark import datasets
@@ -41,9 +40,11 @@ def address(atlas, serve) -> Iterator[str]:
 @pytest.fixture
 def load(tmp_path, monkeypatch):
     """Load a Croissant document; it has no errors and no warnings, files come anew."""
+    import mlcroissant
+
     monkeypatch.setattr(mlcroissant._src.core.constants, "DOWNLOAD_PATH", tmp_path)
 
-    def loaded(jsonld: Any) -> mlcroissant.Dataset:
+    def loaded(jsonld: Any) -> Any:
         found = mlcroissant.Dataset(jsonld=jsonld)
         issues = found.metadata.ctx.issues
         assert (issues.errors, issues.warnings) == (set(), set())
@@ -52,7 +53,7 @@ def load(tmp_path, monkeypatch):
     return loaded
 
 
-def rows_of(dataset: mlcroissant.Dataset, table: str) -> list[dict[str, Any]]:
+def rows_of(dataset: Any, table: str) -> list[dict[str, Any]]:
     found = dataset.records(record_set=table)
     return [{k.removeprefix(f"{table}/"): v for k, v in row.items()} for row in found]
 
@@ -121,6 +122,9 @@ def entities(value: Any) -> Iterator[dict[str, Any]]:
 
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_says_what_it_is_about_in_the_words_of_schema_org(atlas, path) -> None:
+    import msgspec_schemaorg.models as schema_org
+    import rdflib
+
     document = entity_of(atlas.get(path, accept="text/html").text)
     assert document["@context"] == "https://schema.org"
     main = document.get("@graph", [document])
@@ -154,6 +158,8 @@ def test_text_of_a_page_s_entity_cannot_end_its_script() -> None:
 
 @pytest.mark.parametrize("step", [13, pytest.param(1, marks=pytest.mark.slow)])
 def test_every_study_s_entity_says_what_is_known(atlas, step: int) -> None:
+    from signposting import find_signposting_http_link
+
     for item in atlas.walk("/v1/studies?limit=50")[::step]:
         page = atlas.get(f"/studies/{item['key']}", accept="text/html")
         entity = entity_of(page.text)
@@ -166,6 +172,8 @@ def test_every_study_s_entity_says_what_is_known(atlas, step: int) -> None:
 
 
 def test_signposts_lead_from_the_page_to_its_parts_and_back(address) -> None:
+    from signposting import find_signposting_http
+
     page = find_signposting_http(f"{address}/datasets/pd-slit")
     assert {str(t.target) for t in page.types} == {
         "https://schema.org/AboutPage",

@@ -170,6 +170,18 @@ def test_what_is_echoed_is_short(atlas):
     problem(response, 422)
 
 
+def test_a_failure_is_a_problem_that_tells_nothing_of_the_inside(client_of):
+    class Broken(Knowledge):
+        @property
+        def taxonomy(self):
+            raise RuntimeError("secret of the inside")
+
+    response = client_of(create_app(Broken())).get("/v1/taxonomy")
+    document = problem(response, 500)
+    assert "secret" not in response.text
+    assert document["errors"] == []
+
+
 def test_refusals_are_not_stored_and_carry_the_security_headers(atlas):
     response = atlas.get("/v1/studies?x=1")
     assert response.headers["cache-control"] == "no-store"
@@ -183,15 +195,3 @@ def test_json_answers_hold_no_nan(atlas):
 
     for path in TABLES:
         json.loads(atlas.get(path).content, parse_constant=refuse)
-
-
-def test_a_failure_is_a_problem_that_tells_nothing_of_the_inside(client_of):
-    class Broken(Knowledge):
-        @property
-        def taxonomy(self):
-            raise RuntimeError("secret of the inside")
-
-    response = client_of(create_app(Broken())).get("/v1/taxonomy")
-    document = problem(response, 500)
-    assert "secret" not in response.text
-    assert document["errors"] == []

@@ -155,17 +155,3 @@ def test_words_that_are_no_columns_are_refused_with_the_nearest(atlas):
         assert answer.json()["errors"][0]["nearest"] == near
     assert atlas.get("/v1/studies?sort=detector").status_code == 422  # a list a row
     assert atlas.get("/v1/studies?sort=year&sort=key").status_code == 422
-
-
-def test_the_whole_leaderboard_comes_in_pages_or_in_one_answer(atlas):
-    whole = atlas.get("/v1/leaderboard?whole=true").json()
-    rows = [row for board in whole["datasets"] for row in board["rows"]]
-    assert whole["total"] == len(rows) > 1000
-    assert whole["next"] is None
-    first = atlas.get("/v1/leaderboard?limit=500")
-    page = first.json()
-    assert [row for board in page["datasets"] for row in board["rows"]] == rows[:500]
-    assert [board["name"] for board in page["datasets"]] == [b["name"] for b in whole["datasets"]]
-    second = atlas.get(first.links["next"]["url"]).json()
-    assert [row for board in second["datasets"] for row in board["rows"]] == rows[500:1000]
-    assert atlas.table("/v1/leaderboard?limit=3") == atlas.table("/v1/leaderboard?whole=true")[:3]

@@ -31,14 +31,6 @@ def test_a_study_shows_every_value_with_its_basis_and_every_score(atlas: Client)
     assert all(degrees(error) in page for error in errors if error is not None)
 
 
-def test_a_board_is_that_of_the_service_in_its_order(atlas: Client) -> None:
-    rows = atlas.walk("/v1/leaderboard/ccd-lens?condition=hot&limit=500")
-    html = atlas.get("/datasets/ccd-lens?condition=hot&rows=all").text
-    board = html[html.index('id="board"') : html.index('id="heat"')]
-    names = re.findall(r'<td class="first">.*?>([^<]+)</a> \+ .*?>([^<]+)</a>', board)
-    assert names == [(row["extractor"], row["model"]) for row in rows]
-
-
 def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Client) -> None:
     rows = atlas.walk("/v1/leaderboard/architectures?limit=500")
     by_name = [f"{row['detector']} + {row['mask']}" for row in rows]
@@ -78,14 +70,6 @@ def test_the_answer_reads_without_a_script(atlas: Client) -> None:
                 assert degrees(calibration["measured"]["own_error_deg"]) in page
     assert "Asked: task Accuracy, tolerates albedo." in page
     assert "sunatlas recommend --task Accuracy --tolerate albedo" in page
-
-
-def test_the_answers_twins_are_the_documents_of_the_service(atlas: Client) -> None:
-    asked = "accuracy=UFSS&max_error_deg=0.01"
-    document = atlas.get(f"/v1/recommendations?{asked}&include=calibrations").json()
-    assert atlas.get(f"/answer.json?{asked}").json() == document
-    assert atlas.table(f"/answer.csv?{asked}") == atlas.table(f"/v1/recommendations?{asked}")
-    assert atlas.get("/answer.json?detector=CMOSS").status_code == 422
 
 
 @pytest.mark.parametrize(

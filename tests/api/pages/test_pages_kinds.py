@@ -59,46 +59,38 @@ class Page(HTMLParser):
         return [(tag, a[name] or "") for tag, a in self.tags if a.get(name) is not None]
 
 
-@pytest.fixture(scope="module", params=KINDS.values(), ids=KINDS.keys())
-def page(request: pytest.FixtureRequest, atlas: Client) -> Page:
-    response = atlas.get(request.param, accept="text/html")
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_page_is_read_as_it_is_meant_without_a_script(kind: str, atlas: Client) -> None:
+    response = atlas.get(KINDS[kind], accept="text/html")
     assert response.headers["content-type"] == "text/html; charset=utf-8"
     assert response.status_code in {200, 404, 422}
-    return Page(response.text)
-
-
-def test_markup_is_whole_and_ids_are_one_elements(page: Page) -> None:
-    assert page.unmatched == []
-    assert page.open == []
+    page = Page(response.text)
+    assert (page.unmatched, page.open) == ([], []), "markup is whole"
     ids = [value for _, value in page.attributes("id")]
     assert sorted(set(ids)) == sorted(ids)
+    nothing_is_inline_or_from_elsewhere(page)
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch("h[1-6]", tag)]
+    assert levels.count(1) == levels[0] == 1, "one heading of the page, and it comes first"
+    assert all(after - before <= 1 for before, after in pairwise(levels)), "none is skipped"
+    links = {value for tag, value in page.attributes("href") if tag == "a"}
+    assert {pages[0][0] for pages in NAVIGATION.values()} <= links, "every part is a press away"
+    assert ("form", "/search") in page.attributes("action")
+    assert all("scope" in a for tag, a in page.tags if tag == "th")
+    assert all(a.get("alt") is not None for tag, a in page.tags if tag == "img")
+    assert all(a.get("aria-label") for tag, a in page.tags if tag == "svg")
+    assert not re.search(r">\s*None\s*<", page.text)
+    assert not LABEL.findall(text_of(page.text)), "labels of the survey's source"
 
 
-def test_nothing_is_inline_and_nothing_comes_from_elsewhere(page: Page) -> None:
+def nothing_is_inline_or_from_elsewhere(page: Page) -> None:
     assert page.inline == []
     assert not [a for _, attributes in page.tags for a in attributes if a.startswith("on")]
     assert page.attributes("style") == []
-    for tag, address in page.attributes("src") + [
-        (tag, value) for tag, value in page.attributes("href") if tag == "link"
-    ]:
+    loaded = [one for one in page.attributes("href") if one[0] == "link"] + page.attributes("src")
+    for tag, address in loaded:
         assert not urlsplit(address).netloc, (tag, address)
         if address.startswith("/page/"):
             assert PAGE.lookup_path(address.removeprefix("/page/"))[0], address
-
-
-def test_there_is_one_heading_of_the_page_and_none_is_skipped(page: Page) -> None:
-    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch("h[1-6]", tag)]
-    assert levels.count(1) == 1
-    assert levels[0] == 1
-    assert all(after - before <= 1 for before, after in pairwise(levels))
-
-
-def test_every_part_of_the_atlas_is_a_press_away(page: Page) -> None:
-    links = {value for tag, value in page.attributes("href") if tag == "a"}
-    assert {pages[0][0] for pages in NAVIGATION.values()} <= links
-    assert any(
-        tag == "form" and attributes.get("action") == "/search" for tag, attributes in page.tags
-    )
 
 
 def test_every_page_of_a_section_leads_to_the_others(atlas) -> None:
@@ -108,19 +100,6 @@ def test_every_page_of_a_section_leads_to_the_others(atlas) -> None:
             for other, name in pages if address != "/guide" else ():  # as soon as that is built
                 mark = ' aria-current="page"' if other == address else ""
                 assert f'<a href="{other}"{mark}>{name}</a>' in text, section
-
-
-def test_tables_name_their_columns_and_pictures_say_what_they_show(page: Page) -> None:
-    assert all("scope" in a for tag, a in page.tags if tag == "th")
-    assert all(a.get("alt") is not None for tag, a in page.tags if tag == "img")
-    for tag, attributes in page.tags:
-        if tag == "svg":
-            assert attributes.get("aria-label")
-
-
-def test_neither_a_bare_none_nor_a_label_of_the_surveys_source_is_read(page: Page) -> None:
-    assert not re.search(r">\s*None\s*<", page.text)
-    assert not LABEL.findall(text_of(page.text))
 
 
 def test_there_is_a_page_of_every_route() -> None:

@@ -5,12 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from html import unescape
-from pathlib import Path
 from typing import Any
 
-import pytest
-
-from api.addresses import algorithm_page, architecture_page, dataset_page, study_page
 from api.cli.commands.studies import _rungs
 from api.pages.numbers import degrees
 from api.service.knowledge import Knowledge
@@ -19,7 +15,6 @@ from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
 from tests.api.pages.test_pages_content import text_of
 
-DOCS = Path(__file__).resolve().parents[3] / "docs"
 HOOK = re.compile(
     r'<data class="own-error" value="(?P<value>[^"]+)" data-of="(?P<of>[^"]+)">'
     r"(?P<text>[^<]+)</data>"
@@ -33,23 +28,6 @@ def shown(html: str) -> Iterator[tuple[Place, float, str]]:
     """Own errors of a page: data set, extractor and model, number, and what is read."""
     for hook in HOOK.finditer(html):
         yield tuple(unescape(hook["of"]).split("|")), float(hook["value"]), hook["text"]
-
-
-def addresses(known: Knowledge) -> Iterator[str]:
-    """Pages that show pipelines under nominal conditions: one of each kind, and all that vary."""
-    yield from KINDS.values()
-    for board in known.measurements.leaderboard["datasets"]:
-        yield dataset_page(board["name"], rows="all")
-    designs = {(c["detector"], c["mask"]) for c in known.measurements.cards}
-    for detector, mask in sorted(designs):
-        yield architecture_page(detector, mask)
-    for side, attribute in enumerate(("detectors", "masks")):
-        yield from (f"/{attribute}/{value}" for value in sorted({pair[side] for pair in designs}))
-    pairs = [f"{detector}:{mask}" for detector, mask in sorted(designs)]
-    for at in range(0, len(pairs) - 1, 3):
-        yield "/compare?" + "&".join(f"architecture={pair}" for pair in pairs[at : at + 4])
-    yield from (study_page(key) for key in known.of("all").facts.studies)
-    yield from (algorithm_page(one.name) for one in known.catalogue.implementations(None))
 
 
 def require_the_record(known: Knowledge, client: Client, pages: Iterable[str]) -> int:
@@ -78,13 +56,6 @@ def test_own_errors_of_one_page_of_each_kind_are_the_records(
     knowledge: Knowledge, atlas: Client
 ) -> None:
     assert require_the_record(knowledge, atlas, KINDS.values()) > 40
-
-
-@pytest.mark.slow
-def test_own_errors_of_all_pages_are_the_records(knowledge: Knowledge, atlas: Client) -> None:
-    known = sum(row["own_error_deg"] is not None for row in knowledge.measurements.nominal.values())
-    assert known > 3000
-    assert require_the_record(knowledge, atlas, addresses(knowledge)) == known
 
 
 def test_a_study_is_a_ladder_on_one_data_set_and_condition(
@@ -120,19 +91,3 @@ def test_a_study_is_a_ladder_on_one_data_set_and_condition(
     for rung in (ladder["own"], ladder["best"]):
         assert degrees(rung["own_error_deg"]) in read
         assert f"own error {digits(rung['own_error_deg'])} deg" in lines
-
-
-def test_documents_have_the_records_own_errors(knowledge: Knowledge) -> None:
-    own = {
-        (row["dataset"], f"{row['extractor']} + {row['model']}"): row["own_error_deg"]
-        for row in knowledge.measurements.nominal.values()
-    }
-    text = (DOCS / "leaderboard.md").read_text("utf-8")
-    rows = re.findall(
-        r"^\| [^|]+ \| ([^|(]+?) (?:\([^|]*)?\| ([\w-]+)[^|]* \| [\d.]+ \| ([\d.]+)",
-        text,
-        re.MULTILINE,
-    )
-    assert len(rows) == 30
-    for pipeline, dataset, error in rows:
-        assert error == digits(own[dataset, pipeline]), dataset

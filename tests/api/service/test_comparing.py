@@ -3,8 +3,6 @@
 import pytest
 
 from api.service.comparing import compare_architectures, compare_pipelines
-from api.service.knowledge import Knowledge
-from api.service.measurements import Measurements
 from registry.taxonomy import InvalidValueError
 
 DATASET = "cmos-single-aperture"
@@ -97,15 +95,6 @@ def test_what_errs_far_less_under_a_condition_is_named_with_its_share(atlas, kno
     assert named >= 0
     found = compare_pipelines(known, DATASET, ["bctm:spm", "mirror:homography"])
     assert {i["partial_answer"] for i in found["items"]} == {None}
-
-
-def test_architectures_that_only_studies_have_are_shown_without_numbers(tmp_path):
-    unmeasured = Knowledge(Measurements(tmp_path))
-    for item in compare_architectures(unmeasured, ["CMOS:Multi-Ap.", "QPD:Single-Ap."])["items"]:
-        assert item["own_error_deg"] is None
-        assert item["ratio_to_smallest"] is None
-        assert item["reason"] == "no data set"
-        assert len(item["proposed"]) > 3
 
 
 @pytest.mark.parametrize(

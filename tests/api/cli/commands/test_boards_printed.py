@@ -16,8 +16,6 @@ from api.cli.command_line import app
 from benchmark.leaderboard import check, study_record
 from benchmark.leaderboard.check import Difference
 
-DATASET = "qpd-maskless-pyramid"
-
 
 def sunatlas(*arguments: object) -> Any:
     call = list(map(str, arguments))
@@ -68,13 +66,3 @@ def test_a_check_that_finds_differences_fails_and_lists_them(checked: Checked) -
 
 
 # ---- leaderboard --dataset
-
-
-def test_a_condition_that_no_data_set_asked_for_has_leaves_nothing() -> None:
-    shown = sunatlas(
-        *("leaderboard", "--dataset", DATASET, "--condition", "stable", "--format", "json")
-    )
-    assert shown.exit_code == 1
-    assert json.loads(shown.stdout) == {"items": [], "total": 0}
-    assert shown.stderr == "sunatlas: no pipeline has such an error there\n"
-    assert sunatlas("leaderboard", "--each", "--condition", "hot", "--max-error", 0).exit_code == 1

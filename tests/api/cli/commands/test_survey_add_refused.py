@@ -29,15 +29,6 @@ def add(*arguments: object) -> Any:
     return CliRunner(env={"COLUMNS": "200"}).invoke(app, call, catch_exceptions=False)
 
 
-def test_a_template_is_not_written_over_a_file(tmp_path: Path) -> None:
-    there = tmp_path / "mine.toml"
-    there.write_text(TEMPLATE)
-    refused = add("--init", "Doe2030", there)
-    assert refused.exit_code == 2
-    assert f"--init: {there} is there already" in refused.stderr
-    assert there.read_text() == TEMPLATE
-
-
 def test_a_template_without_a_file_is_printed(tmp_path: Path) -> None:
     shown = add("--init", "Doe2030")
     assert shown.exit_code == 0, shown.stderr
