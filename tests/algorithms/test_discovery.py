@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -112,15 +109,3 @@ def test_a_chain_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     with pytest.raises(ValueError, match=r"planned already by .*ahead_of: optical \+ lsq"):
         discover_chains()
-
-
-def test_finding_everything_loads_no_numerics_but_numpy():
-    code = (
-        "import sys\n"
-        "from algorithms.discovery import discover_extractors, discover_models\n"
-        "assert discover_extractors() and discover_models()\n"
-        "heavy = {'numba', 'scipy', 'cv2', 'pandas', 'plotly'} & set(sys.modules)\n"
-        "assert not heavy, heavy\n"
-    )
-    root = Path(algorithms.__file__).parent.parent
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=root, timeout=600)

@@ -62,25 +62,3 @@ def disc(x_px: float, y_px: float) -> np.ndarray:
     light = 180.0 / (1.0 + np.exp(2.0 * (np.hypot(x - x_px, y - y_px) - 7.0)))
     noise = np.random.default_rng(5).normal(0.0, 2.0, light.shape)
     return (20.0 + light + noise).round().astype(np.uint8)
-
-
-@pytest.mark.slow
-def test_the_examples_of_pipelines_run_one_after_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[1:4]
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
-    exec(blocks[0], names)
-    fitted, features = names["pipeline"], names["test"].observations
-    exec(blocks[1], names)
-    np.testing.assert_array_equal(
-        names["again"].predict(features, names["test"].origin_px), names["sun"]
-    )
-    known = np.isfinite(names["sun"][:, 0])
-    assert (names["sigma_deg"][known] < 0.1).all()
-    low, high = fitted.model.quality_.parameter("focal_length_error").interval()
-    assert low < high
-    exec(blocks[2], names)
-    assert names["pipeline"].name == "temperature + basic"
-    assert np.isfinite(names["sun"][:, 0]).mean() > 0.5

@@ -50,24 +50,6 @@ def test_kernels_give_the_same_numbers_without_the_compiler():
 
 
 @pytest.mark.slow
-def test_kernels_work_where_nothing_can_be_cached():
-    """A read-only installation: Numba finds no place for its cache and says so with an error."""
-    code = (
-        "import numba, numpy as np\n"
-        "real = numba.njit\n"
-        "def without_cache(*args, **kwargs):\n"
-        "    if kwargs.get('cache'):\n"
-        "        raise RuntimeError('cannot cache function: no locator available')\n"
-        "    return real(*args, **kwargs)\n"
-        "numba.njit = lambda *a, **k: (lambda f: without_cache(*a, **k)(f))\n"
-        "from algorithms.extractors.frames.peak import PixelMax\n"
-        "frames = np.zeros((1, 4, 5), np.uint16); frames[0, 2, 3] = 7\n"
-        "assert PixelMax().extract(frames).tolist() == [[3.0, 2.0]]\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)
-
-
-@pytest.mark.slow
 def test_a_change_in_a_kernel_of_another_file_is_noticed(tmp_path):
     """The caller's machine code has the callee's inside, and Numba looks at the caller's alone."""
     (tmp_path / "caller.py").write_text(

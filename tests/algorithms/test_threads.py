@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import cv2
-import pytest
 import scipy.linalg  # noqa: F401 - brings a BLAS of its own
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -46,19 +45,3 @@ def test_a_blas_that_is_not_loaded_yet_is_held_to_one_thread_too():
     )
     environment = os.environ | {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"}
     subprocess.run([sys.executable, "-c", code], check=True, env=environment, timeout=600)
-
-
-@pytest.mark.slow
-def test_measuring_does_without_opencv():
-    code = (
-        "import sys\n"
-        "from benchmark.plan.parts import installed_parts\n"
-        "from benchmark.running.task import Task, measure\n"
-        "parts = installed_parts()\n"
-        "models = (parts.model('basic'),)\n"
-        "cube, direct = parts.preset('pd-maskless-cube'), parts.extractor('direct')\n"
-        "task = Task(cube, 'nominal', direct, models)\n"
-        "assert measure(task).outcomes[0].score is not None\n"
-        "assert 'cv2' not in sys.modules\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=600)

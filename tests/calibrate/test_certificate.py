@@ -8,10 +8,8 @@ from xml.etree import ElementTree as ET
 import bench
 import numpy as np
 import pytest
-from typer.main import get_command
 
-from api.cli.commands.calibrate import app
-from calibrate import calibration, products
+from calibrate import calibration
 from calibrate.report.certificate import certificate
 from calibrate.roles import guess
 from calibrate.settings import CertificateSettings
@@ -141,15 +139,3 @@ def test_who_and_what_are_stated_and_the_rest_is_said_to_be_unknown(camera):
     assert root.findtext(".//dcc:customer/dcc:location/dcc:countryCode", "", NAMES) == "ZZ"
     assert "sun-sensor-atlas" in held
     assert any((one or "").startswith("Verdict: good") for one in held)
-
-
-def test_the_command_writes_it_beside_the_rest(camera, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: camera)
-    monkeypatch.setattr(products, "report", lambda *_, **__: "")
-    written = tmp_path / "certificate.xml"
-    told = ["bench.csv", "--out", str(tmp_path / "out")]
-    command = get_command(app)
-    status = command.main([*told, "--certificate", str(written)], standalone_mode=False)
-    assert status == 0
-    require_order(ET.fromstring(written.read_text(encoding="utf-8")))
-    assert f"wrote {written}" in capsys.readouterr().out

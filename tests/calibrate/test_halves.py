@@ -72,20 +72,3 @@ def test_three_runs_of_one_field_are_halved_by_runs_and_compared() -> None:
     found = compared(runs((0.0, 0.0), (0.3, 0.3), (-0.3, -0.3)))
     assert 0.2 < found.ratio < 2.0
     assert found.chance > 1e-3
-
-
-@pytest.mark.parametrize(
-    ("used", "noise"),
-    [
-        pytest.param(camera(GRID), 0.0, id="readings without noise"),
-        pytest.param(camera(GRID), np.nan, id="noise not known"),
-        pytest.param(camera(GRID[:6]), 0.01, id="poses of a half along a line"),
-        pytest.param(
-            runs((30.0, 0.0), (-20.0, 25.0), (-20.0, -25.0)), 0.01, id="runs of fields apart"
-        ),
-    ],
-)
-def test_what_is_not_known_is_said_to_be_no_misfit(used: Readings, noise: float) -> None:
-    found = compared(used, noise)
-    assert np.isnan(found.ratio)
-    assert found.chance == 1.0

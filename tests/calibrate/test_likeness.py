@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import json
-
-import bench
 import pytest
-import typer
 
-from api.cli.commands.benchmark import app
 from calibrate.likeness import alike
 
 MINE = {"a": 0.1, "b": 0.2, "c": 1.0, "d": 4.0, "e": 5.0}
@@ -34,21 +29,3 @@ def test_ratios_between_models_decide_and_not_their_size():
     assert [(one.dataset, one.extractor) for one in found] == [("near", "x"), ("flat", "x")]
     assert found[0].factor == pytest.approx(1.0)
     assert set(found[0].errors_deg) == set("abcde")
-
-
-@pytest.mark.slow
-def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):
-    angles = bench.grid(9)
-    path = bench.write(
-        tmp_path / "a.csv", bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles
-    )
-    models = [f"--model={name}" for name in ("homography", "pinhole", "polynomial-2d", "spm")]
-    typer.main.get_command(app).main(
-        ["--data", str(path), *models, "--format", "json"], standalone_mode=False
-    )
-    said = capsys.readouterr()
-    rows = json.loads(said.out)
-    rows = rows if isinstance(rows, list) else next(v for v in rows.values() if isinstance(v, list))
-    assert {row["model"] for row in rows} == {"homography", "pinhole", "polynomial-2d", "spm"}
-    assert all(row["dataset"] and row["dataset_own_error_deg"] for row in rows)
-    assert "within a factor of" in said.err

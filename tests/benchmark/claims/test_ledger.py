@@ -149,12 +149,3 @@ def test_a_broken_file_is_named(tmp_path):
     (tmp_path / RECORD.name).write_text('{"schema":1,"claims":[{"claim": "C04"}]}')
     with pytest.raises(StoreError, match=r"claims\.json: claims/0/values: Field"):
         read_outcomes(tmp_path)
-
-
-def test_an_explanation_of_another_verdict_is_not_shown(tmp_path):
-    keep(tmp_path, trials())
-    said = tmp_path / "explanations.csv"
-    for verdict, shown in (("refuted", ""), ("reproduced", "It is so.")):
-        said.write_text(f"claim,verdict,says\nC04,{verdict},It is so.\n")
-        (entry,) = [one for one in ledger(tmp_path, said) if one.outcome]
-        assert (entry.claim.id, entry.verdict, entry.explanation) == ("C04", "reproduced", shown)

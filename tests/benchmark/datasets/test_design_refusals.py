@@ -2,46 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import pytest
 
-from benchmark import datasets
 from benchmark.datasets.conditions.flight_bounds import MAGNETOMETER, posterior_bound
 from benchmark.simulator.flight.gyro import Gyro
-
-SLIT = "from benchmark.datasets.standard.pd_slit import PRESET\n"
-
-
-@pytest.mark.parametrize(
-    ("modules", "error", "message"),
-    [
-        ({"pd_slit": "PRESET = 'pd-slit'\n"}, TypeError, "must define PRESET, a Preset; got 'pd-s"),
-        ({"pd_slit": ""}, TypeError, "must define PRESET, a Preset; got None"),
-        ({"pd_slit": SLIT, "pd_slot": SLIT}, ValueError, "two datasets are called 'pd-slit'"),
-        ({"pd_slot": SLIT}, ValueError, "'pd-slit' belongs in a module called pd_slit; .* pd_slot"),
-    ],
-)
-def test_a_module_without_a_data_set_of_its_own_name_is_refused(
-    modules: dict[str, str],
-    error: type[Exception],
-    message: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    name = f"standard_of_{tmp_path.name}".replace("-", "_")
-    (tmp_path / name).mkdir()
-    for module, text in {"__init__": "", **modules}.items():
-        (tmp_path / name / f"{module}.py").write_text(text)
-    monkeypatch.syspath_prepend(tmp_path)
-    there: Any = SimpleNamespace(__name__=name, __path__=[str(tmp_path / name)])
-    monkeypatch.setattr(datasets, "standard", there)
-    with pytest.raises(error, match=message):
-        datasets._presets.__wrapped__()
-
 
 COUNT = 6
 SUN = np.tile([0.0, 0.0, 1.0], (COUNT, 1))

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from benchmark.datasets import Preset
-from benchmark.datasets.conditions.full_frames import FullFramePreset
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Irradiance
@@ -210,15 +209,3 @@ def test_the_bound_falls_with_the_root_of_the_light_once_shot_noise_rules() -> N
         lit = LitPixels(sensor, still(sun), pattern)
         mean.append(cramer_rao(lit, still(sun), pattern, LIGHT).rms_deg)
     assert mean[0] / mean[1] == pytest.approx(2, rel=0.03)
-
-
-def test_full_frame_bounds_do_not_depend_on_the_batch(monkeypatch: pytest.MonkeyPatch) -> None:
-    data = preset("cmos-encoded")
-    assert isinstance(data, FullFramePreset)
-    few = replace(data, directions=replace(data.directions, steps=2, test_samples=3))
-    first = few.bound("nominal")
-    assert first.observable.all()
-    monkeypatch.setattr("benchmark.datasets.conditions.full_frames.BOUND_BATCH", 2)
-    again = few.bound("nominal")
-    assert again.angle_deg == pytest.approx(first.angle_deg, rel=1e-9)
-    assert len(again.angle_deg) == 3

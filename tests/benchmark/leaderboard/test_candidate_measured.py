@@ -128,23 +128,3 @@ def test_an_algorithm_without_a_pipeline_is_refused(
     )
     with pytest.raises(UnfitError, match=said):
         ranked(name, Store(tmp_path / "none"), tmp_path / "work", parts)
-
-
-CUBE = "pd-maskless-cube"
-
-
-@pytest.mark.slow
-def test_a_model_of_the_record_has_its_published_numbers_among_all_others(tmp_path: Path) -> None:
-    record = Store()
-    found = rank("basic", CUBE, record, Store(tmp_path / "work"))
-    published = {
-        (row["extractor"], row["model"]): row
-        for row in record.rows()
-        if row["dataset"] == CUBE and row["condition"] == "nominal"
-    }
-    board = {(row["extractor"], row["model"]): row for row in found.rows}
-    assert board.keys() == published.keys()
-    assert {pair: row["rms_deg"] for pair, row in board.items()} == {
-        pair: row["rms_deg"] for pair, row in published.items()
-    }
-    assert {model for _, model in found.pipelines} >= {"basic"}

@@ -16,7 +16,6 @@ from benchmark.progress import silent
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import Store
 from benchmark.running import condition_data
-from benchmark.sweeps.record import RECORD as SWEEPS
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
 PARTS = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
@@ -159,19 +158,3 @@ def test_a_changed_page_is_a_named_line(published):
     path.write_text(right[:-1])
     [difference] = check(published, stored_only=True)
     assert (difference.file, difference.cell) == (PAGE, "file")
-
-
-POINT = "faces/noise/50/fake-currents"
-
-
-@pytest.mark.slow
-def test_a_changed_sweep_is_named_by_its_point(published):
-    rows = SWEEPS.read(published)
-    row = next(row for point, row in rows.items() if str(point) == POINT)
-    right = row["rms"]
-    row["rms"] *= 1.5
-    SWEEPS.write(rows, published)
-    assert check(published, stored_only=True) == []
-    [difference] = check(published)
-    assert (difference.file, difference.cell) == ("sweeps.csv", f"{POINT}/rms")
-    assert (difference.committed, difference.measured) == (str(row["rms"]), str(right))

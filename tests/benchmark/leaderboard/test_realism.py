@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,9 +10,7 @@ from hypothesis import strategies as st
 
 from benchmark import datasets
 from benchmark.datasets.realism import (
-    COLUMNS,
     HardwareMatch,
-    RealismError,
     hardware_matches,
 )
 from benchmark.leaderboard.realism import FACTOR, nearest_ratio, realism
@@ -116,20 +113,3 @@ def test_the_nearest_ratio_is_that_of_the_range(ratios: list[float]) -> None:
         assert all(max(found, 1 / found) <= max(one, 1 / one) * (1 + 1e-12) for one in ratios)
     assert nearest_ratio([None, *ratios]) == found
     assert nearest_ratio([None]) is None
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("a,C01 X99,,", "line 2: no built sensor X99"),
-        ("a,,,", "line 2"),
-        ("a,C01,why,", "line 2"),
-        ("a,C01,,\na,C02,,", "line 3: a stands there already"),
-        ("a,C01", "row 2"),
-    ],
-)
-def test_a_broken_table_is_named_with_its_line(line: str, said: str, tmp_path: Path) -> None:
-    path = tmp_path / "realism.csv"
-    path.write_text(f"{','.join(COLUMNS)}\n{line}\n", "utf-8", newline="\n")
-    with pytest.raises(RealismError, match=said):
-        hardware_matches(path)

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import pytest
-
 from benchmark.contract import ON_BENCH
 from benchmark.leaderboard import scope, study_record
-from benchmark.plan.parts import Parts, every_part, installed_parts, split_parts, study_parts
+from benchmark.plan.parts import every_part, installed_parts, split_parts, study_parts
 from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
 from benchmark.suites.selection import suite
 
@@ -47,14 +43,3 @@ def test_all_that_is_published_is_the_standard_suite_and_quick_does_without() ->
     assert set(suite("standard").select(scores, every_part())) == set(scores)
     quick = {cell.dataset for cell in suite("quick").select({}, every_part())}
     assert quick.isdisjoint(study_parts().presets)
-
-
-@pytest.mark.slow
-def test_a_sensor_is_measured_as_it_is_published(tmp_path: Path) -> None:
-    known = study_parts()
-    name = "pd-maskless-two-pyramids"
-    parts = Parts({name: known.presets[name]}, known.extractors, known.models)
-    summary = study_record.update(tmp_path, parts=parts)
-    assert summary.failed == ()
-    published = Store(PUBLISHED_STUDIES).scores()
-    assert Store(tmp_path).scores() == {c: r for c, r in published.items() if c.dataset == name}

@@ -246,10 +246,3 @@ def test_sun_in_a_face_plane_of_a_cosine_cube_has_a_finite_bound() -> None:
     assert bound.observable[0]
     expected = math.degrees(math.sqrt(1 + 2) * 0.1 / 100)
     assert bound.angle_deg[0] == pytest.approx(expected, rel=0.02)
-
-
-def test_bound_does_not_depend_on_the_batch(monkeypatch: pytest.MonkeyPatch) -> None:
-    preset = datasets.get("qpd-single-aperture")
-    whole = preset.bound("nominal", "calibration")
-    monkeypatch.setattr("benchmark.metrics.bounds.BATCH", 7)
-    assert np.array_equal(preset.bound("nominal", "calibration").angle_deg, whole.angle_deg)

@@ -53,13 +53,6 @@ def test_pandas_reads_rows_sorted_with_errors_and_outcomes(record: Path) -> None
     np.testing.assert_allclose(first["error_deg"], ERRORS, rtol=1 / 2048)
 
 
-def test_pandas_reads_what_the_samples_are(record: Path) -> None:
-    found = pd.read_parquet(record / "samples" / "lamp.directions.parquet")
-    np.testing.assert_allclose(found[["sun_x", "sun_y", "sun_z"]], SUN, atol=1e-7)
-    assert found["observable"].tolist() == [True, True, True, False]
-    np.testing.assert_allclose(found["bound_deg"], [0.01, 0.02, 0.03, math.nan], rtol=1e-7)
-
-
 @pytest.mark.parametrize("size", [1e-9, 3e-5, 0.0021, 0.5, 7.3, 179.99])
 def test_an_error_is_kept_to_a_part_in_two_thousand(size: float) -> None:
     values = size * np.random.default_rng(0).uniform(0.1, 1.0, 500)
@@ -137,13 +130,6 @@ def test_other_types_are_refused(record: Path, column: str, kind: pa.DataType, s
     place = table.schema.get_field_index(column)
     parquet.write_table(table.set_column(place, column, table[column].cast(kind)), path)
     with pytest.raises(StoreError, match=said):
-        samples.read_samples("lamp", record)
-
-
-def test_other_columns_are_refused(record: Path) -> None:
-    path = record / "samples" / "lamp.parquet"
-    pd.read_parquet(path).drop(columns="outcome").to_parquet(path)
-    with pytest.raises(StoreError, match="expected the columns extractor"):
         samples.read_samples("lamp", record)
 
 

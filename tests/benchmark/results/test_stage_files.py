@@ -1,7 +1,6 @@
 """Results of stages on disk: the last bit comes back, the damaged does not, and room is made."""
 
 import os
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -96,14 +95,6 @@ def test_what_else_is_in_the_folder_is_neither_counted_nor_removed(files):
     StageFiles(files.directory, 1).make_room()
     assert files.keys() == set()
     assert all(path.is_file() for path in others)
-
-
-def test_several_may_write_the_same(files):
-    value = np.arange(20_000)
-    with ThreadPoolExecutor(4) as pool:
-        list(pool.map(lambda _: files.put(key(1), value), range(20)))
-        found = list(pool.map(lambda _: files.get(key(1)), range(20)))
-    assert all(np.array_equal(one, value) for one in found)
 
 
 def test_the_limit_is_a_setting(monkeypatch, tmp_path):

@@ -13,7 +13,6 @@ from pydantic import BaseModel
 
 from benchmark.metrics.score import METRICS
 from benchmark.results import record_manifest
-from benchmark.results.components import ComponentsError
 from benchmark.results.csv_tables import StoreError, number, read_csv, text_of, word
 from benchmark.results.row_file import Row, TableFile
 from benchmark.results.store import Store, UnknownFieldError, pins_text, read_pins
@@ -111,13 +110,6 @@ def test_rows_carry_what_is_known_of_what_they_are_of(store):
     assert [one["rms_deg"] for one in store.rows(unit=1)] == [0.6]
 
 
-def test_a_score_of_something_unknown_is_an_error_that_names_it(store):
-    write(store, {cell("a"): numbers()})
-    store.components_path.write_text(components().only([]).text())
-    with pytest.raises(ComponentsError, match="score of d/c/e/a names 'd', unknown"):
-        store.rows()
-
-
 def test_queries_filter_and_name_the_nearest_field(store):
     scores = {
         cell("a"): numbers(),
@@ -174,13 +166,6 @@ def test_a_file_of_other_columns_or_no_text_is_named(store):
         store.pins()
     (store.scores_directory / "d.csv").write_text("")
     with pytest.raises(StoreError, match=r"line 1.*none"):
-        store.scores()
-
-
-def test_a_file_where_the_tables_of_scores_should_be_is_refused(store):
-    store.directory.mkdir()
-    store.scores_directory.touch()
-    with pytest.raises(StoreError, match="scores: expected a directory of tables"):
         store.scores()
 
 

@@ -11,20 +11,15 @@ import pytest
 from fake_atlas import Diodes, FakeBound
 from fake_results import pin as made_pin
 
-from benchmark import datasets
-from benchmark.contract import SPLITS
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.results.record import open_record
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import Store
 from benchmark.running import condition_data, pinning, runner
 from benchmark.running.condition_data import rms_bound
 from benchmark.running.pinning import UnversionedChangeError, changed_heads
-
-SMALL = ("pd-maskless-cube", "oi-maskless-pyramid")  # a second each
 
 
 @dataclasses.dataclass(frozen=True)
@@ -251,45 +246,3 @@ def test_scores_of_data_that_were_pinned_anew_are_dropped(store):
     runner.run(plan.cells(parts=there), store, progress=silent, parts=there)
     update(store, parts=parts(Diodes(version=2, seed=8), Diodes(name="fake-second")))
     assert {row["dataset"] for row in store.rows()} == {"fake-second"}
-
-
-def _some(*names):
-    return Parts({name: datasets.get(name) for name in names}, {}, {})
-
-
-@pytest.mark.slow
-def test_hashes_depend_on_neither_workers_nor_order_nor_company(tmp_path):
-    """The published pins, from one process and two, in any order, alone and together."""
-    published = {
-        place: pin.data_hash for place, pin in Store(PUBLISHED).pins().items() if place[0] in SMALL
-    }
-    assert set(published) == pinning.places(_some(*SMALL))
-
-    def made(name, *wanted, workers):
-        store = Store(tmp_path / name)
-        condition_data.forget()
-        update(store, workers=workers, parts=_some(*wanted))
-        return {place: pin.data_hash for place, pin in store.pins().items()}
-
-    assert made("together", *SMALL, workers=2) == published
-    alone = made("alone", SMALL[1], workers=1)
-    assert alone == {place: one for place, one in published.items() if place[0] == SMALL[1]}
-    backwards = {
-        (name, condition, split): samples_hash(datasets.get(name).generate(condition, split))
-        for name in reversed(SMALL)
-        for condition in reversed(datasets.get(name).conditions)
-        for split in reversed(SPLITS)
-    }
-    assert backwards == published
-
-
-@pytest.mark.slow
-def test_everything_there_is_is_pinned():
-    pins = Store(PUBLISHED).pins()
-    assert set(pins) == pinning.places(), "run `sunatlas dataset pin`"
-    assert len({pin.data_hash for pin in pins.values()}) == len(pins)
-    presets = installed_parts().presets
-    splits = {name: preset.card()["splits"] for name, preset in presets.items()}
-    for (name, _, split), pin in pins.items():
-        assert pin.n == splits[name][split]["samples"]
-        assert pin.version == presets[name].version

@@ -10,28 +10,15 @@ import pytest
 
 from algorithms.chain import Chain
 from benchmark.contract import Cell, UnknownNameError
-from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.suites.selection import NOT_QUICK, SUITES, suite
+from benchmark.suites.selection import SUITES, suite
 from registry.studies import facts
 
 
 @pytest.fixture(scope="module")
 def quick() -> list[Cell]:
     return suite("quick").select({}, installed_parts())
-
-
-@pytest.mark.slow
-def test_quick_meets_every_extractor_and_every_model_that_fits_a_data_set(
-    quick: list[Cell],
-) -> None:
-    everything = cells()
-    assert {cell.extractor for cell in quick} == set(installed_parts().extractors)
-    assert {cell.model for cell in quick} == {cell.model for cell in everything}
-    assert {cell.dataset for cell in quick} == set(installed_parts().presets) - NOT_QUICK
-    assert set(quick) <= set(everything)
-    assert len(set(quick)) == len(quick) < 150
 
 
 def test_quick_meets_every_category_of_models_that_has_one(quick: list[Cell]) -> None:

@@ -6,7 +6,6 @@ import dataclasses
 import re
 from dataclasses import dataclass
 from typing import ClassVar
-from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -19,7 +18,6 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.running.experiment import list_due, update
 from benchmark.sweeps import plan as sweep_plan
-from benchmark.sweeps import plots as sweep_pictures
 from benchmark.sweeps.record import RECORD, swept
 from benchmark.synthetic_features.series import SWEEPS
 
@@ -130,25 +128,6 @@ def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name)
     digests = experiment.series_digests()
     monkeypatch.setattr(experiment, "series_digests", lambda: {**digests, name: "0" * 16})
     assert computed(made, {"plain": Plain}) == (POINTS if name == "quadrants" else 0)
-
-
-@pytest.mark.slow
-def test_pictures_are_the_same_every_time_and_well_formed(made):
-    rows = swept(made)
-    for sweep in sweep_pictures.DRAWN:
-        text = sweep_pictures.picture(rows, sweep)
-        assert text == sweep_pictures.picture(rows, sweep)
-        ET.fromstring(text)
-    assert "nothing found" in sweep_pictures.picture(rows, "noise")  # the broken one's panel
-    dots = [
-        line.get_xdata()
-        for axes in sweep_pictures.figure(rows, "noise").axes
-        for line in axes.lines
-        if line.get_marker() == "o"
-    ]
-    assert sum(map(len, dots)) == 7
-    with pytest.raises(ValueError, match=r"\bsweep\b.*noise, size, phase"):
-        sweep_pictures.picture(rows, "pedestal")
 
 
 def test_every_method_of_the_survey_has_a_noise_sweep():

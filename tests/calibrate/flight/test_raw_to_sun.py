@@ -135,15 +135,6 @@ def test_files_of_two_runs_do_not_compile_together(written, tmp_path):
         compiled(tmp_path, "gcc", "-std=c99", "-c", "ss.c")
 
 
-def test_every_file_names_the_digest(written):
-    _, code, _ = written("spots")
-    texts = code.files("ss", {}, DIGEST)
-    assert set(texts) == {"ss.py", "ss.h", "ss.c", "ss_selftest.c", "ss_example.c"}
-    assert all(DIGEST[:16] in text for text in texts.values())
-    assert DIGEST in texts["ss.c"]
-    assert DIGEST in texts["ss.py"]
-
-
 @needs_gcc
 def test_dark_rows_are_refused_whichever_way_readings_go(written):
     _, _, directory = written("quadrants")

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +21,7 @@ from calibrate.report.errors import (
     level,
 )
 from calibrate.report.factory import compared_with
-from calibrate.report.page import Asked, outcomes, report
+from calibrate.report.page import report
 from calibrate.report.requirement import RequirementError, judged, requirement
 from calibrate.verdict import next_poses
 from tests.calibrate.bench import HEADER, grid, spots, sun_of, turn, write
@@ -162,40 +160,6 @@ def test_a_requirement_is_met_not_met_or_not_shown(camera: Calibration) -> None:
     assert made["0.09deg@95%,39deg"].margin_deg == pytest.approx(-0.01)
     assert "do not reach 55 deg" in made["0.11deg@rms,55deg"].sentence
     assert "370 poses" in made["0.11deg@3sigma,10deg"].sentence
-
-
-class Text(HTMLParser):
-    """Words of a page, each piece between tags one; its style is none."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.pieces: list[str] = []
-        self.inside = ""
-
-    def handle_starttag(self, tag: str, attrs: object) -> None:
-        self.inside = tag
-
-    def handle_data(self, data: str) -> None:
-        if self.inside != "style":
-            self.pieces.append(data.strip())
-
-
-def test_the_report_says_what_an_engineer_signs(camera: Calibration) -> None:
-    asked = Asked((requirement("1deg@95%,30deg"),))
-    page = report(camera, "sunatlas calibrate a.csv", "a table", asked)
-    read = Text()
-    read.feed(page)
-    said = " ".join(read.pieces)
-    assert [one.word for one in outcomes(camera, asked)] == ["met"]
-    for words in (
-        "Requirement 1deg@95%,30deg: met.", "In 95 % interval", "3 sigma", "along y", "Largest",
-        "Off-axis angle that poses reach", "readings.columns x_px, y_px", camera.digests[0],
-        "sunatlas calibrate a.csv", "numpy", "Calibrated by", "Models compared",
-    ):  # fmt: skip
-        assert words in said, words
-    assert re.search(r"Report of \d{4}-\d\d-\d\d", said)
-    assert max(map(len, read.pieces)) < 400
-    assert "size: A4" in page
 
 
 def test_names_that_are_markup_or_mathematics_are_shown_as_they_are(camera: Calibration) -> None:

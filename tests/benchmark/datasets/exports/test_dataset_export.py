@@ -9,20 +9,17 @@ import stat
 import subprocess
 import zipfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from benchmark import datasets
-from benchmark.datasets import Samples
 from benchmark.datasets import export as dataset_export
 from benchmark.datasets.corrected import corrections
 from benchmark.datasets.export import CARD, ExportError, export
-from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
+from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.export_verification import verify
-from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.results.store import PUBLISHED, Store
 from files.checksums import CHECKSUMS, write_checksums
@@ -176,24 +173,6 @@ def test_tables_read_back_as_the_arrays(made):
             np.testing.assert_array_equal(found, array)
 
 
-def test_exporting_twice_gives_the_same_bytes(quads, tmp_path):
-    again = exported("qpd-single-aperture", tmp_path / "again")
-    assert content(again.directory) == content(quads.directory)
-
-
-@pytest.mark.slow
-def test_a_whole_split_carries_the_published_hash(tmp_path):
-    out = tmp_path / "cube"
-    made = export("pd-maskless-cube", out, conditions=["cosine"], splits=["test"], pins=PINS)
-    (arrays,) = (file for file in made.card["files"] if file["kind"] == "arrays")
-    pin = PINS["pd-maskless-cube", "cosine", "test"]
-    assert arrays["data_hash"] == arrays["published_data_hash"] == pin.data_hash
-    assert arrays["samples"] == pin.n
-    assert {Path(name).parts[0] for name in made.files} == {CARD, CHECKSUMS, "cosine"}
-    loaded = read_archive(made.directory / "cosine" / "test.npz")
-    assert samples_hash(Samples(loaded["observations"], loaded["sun"], None)) == pin.data_hash
-
-
 def test_a_flipped_byte_is_found_in_any_file(copy):
     for name in [*content(copy)]:
         if name == CHECKSUMS:
@@ -244,31 +223,6 @@ def test_a_directory_that_is_no_export_is_refused(tmp_path, card, says):
         verify(tmp_path)
 
 
-def test_nothing_in_the_way_is_overwritten(copy, tmp_path):
-    before = content(copy)
-    with pytest.raises(ExportError, match="--force"):
-        exported("qpd-single-aperture", copy)
-    assert content(copy) == before
-    made = exported("qpd-single-aperture", copy, n=3, force=True)
-    assert made.card["exported"]["first_samples"] == 3
-    assert verify(copy) == []
-    (copy / "nominal" / "notes.txt").write_text("mine")
-    with pytest.raises(ExportError, match=r"holds nominal/notes\.txt, which is no part"):
-        exported("qpd-single-aperture", copy, force=True)
-    foreign = tmp_path / "foreign"
-    foreign.mkdir()
-    (foreign / "thesis.tex").write_text("mine")
-    with pytest.raises(ExportError, match=r"holds thesis\.tex"):
-        exported("qpd-single-aperture", foreign, force=True)
-    with pytest.raises(ExportError, match="expected a directory or nothing"):
-        exported("qpd-single-aperture", foreign / "thesis.tex", force=True)
-    (tmp_path / "link").symlink_to(foreign)
-    with pytest.raises(ExportError, match="expected a directory or nothing"):
-        exported("qpd-single-aperture", tmp_path / "link", force=True)
-    assert (foreign / "thesis.tex").read_text() == "mine"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["copy", "foreign", "link"]
-
-
 def test_a_failure_half_way_leaves_nothing(tmp_path, monkeypatch):
     def failing(*_):
         raise OSError("disk full")
@@ -310,48 +264,8 @@ def test_an_archive_is_the_same_bytes_readable_by_all(tmp_path: Path) -> None:
         read_archive(tmp_path / "c.npz")
 
 
-def test_columns_are_numbered_from_one_or_named_by_axis(tmp_path: Path) -> None:
-    found = columns_of(ARRAYS)
-    assert list(found) == [
-        "signal_1", "signal_2", "signal_3", "signal_4", "sun_x", "sun_y", "sun_z",
-        "origin_px_1", "origin_px_2", "observable", "bound_deg",
-    ]  # fmt: skip
-    np.testing.assert_array_equal(found["signal_2"], ARRAYS["observations"][:, 1])
-    np.testing.assert_array_equal(found["sun_z"], ARRAYS["sun"][:, 2])
-    # three signals are signals, no vector
-    three = columns_of({"observations": np.zeros((2, 3))})
-    assert list(three) == ["signal_1", "signal_2", "signal_3"]
-    write_table(tmp_path / "t.csv", ARRAYS)
-    header, first, second = (tmp_path / "t.csv").read_text().splitlines()
-    assert header.split(",") == list(found)
-    assert first.split(",")[:2] == ["0.0", "0.3333333333333333"]
-    assert second.split(",")[-2:] == ["False", "inf"]
-
-
 @pytest.mark.parametrize("n", [0, -1])
 def test_an_export_is_of_one_sample_at_least(tmp_path: Path, n: int) -> None:
     with pytest.raises(ValueError, match=rf"^n\b.*\b1\b.* {n}$"):
         export("pd-maskless-cube", tmp_path / "out", n=n)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_an_export_of_one_sample_of_one_split_has_it_in_every_form(tmp_path: Path) -> None:
-    seen: list[Any] = []
-    made = export(
-        "pd-maskless-cube",
-        tmp_path / "out",
-        conditions=["nominal"],
-        splits=["test"],
-        n=1,
-        progress=lambda *said: seen.append(said),
-    )
-    assert seen == [(0, 1, "nominal test"), (1, 1, "")]
-    assert made.card["exported"] == {
-        "conditions": ["nominal"], "splits": ["test"], "first_samples": 1,
-    }  # fmt: skip
-    arrays = read_archive(tmp_path / "out" / "nominal" / "test.npz")
-    assert {len(array) for array in arrays.values()} == {1}
-    assert len((tmp_path / "out" / "nominal" / "test.csv").read_text().splitlines()) == 2
-    assert verify(tmp_path / "out") == []
-    with pytest.raises(ExportError, match="replace it with --force"):
-        export("pd-maskless-cube", tmp_path / "out", n=1)

@@ -108,16 +108,6 @@ def test_a_contradiction_is_named_with_its_file(
     assert problem.startswith(what)
 
 
-def test_an_export_of_an_unknown_data_set_is_held_against_nothing(copy: Path) -> None:
-    card = card_in(copy)
-    card["name"] = "pd-slitt"
-    seal(copy, card)
-    ((file, problem),) = verify(copy, anew=False)
-    assert file == CARD
-    assert "'pd-slitt'" in problem
-    assert problem.endswith("nothing to hold it against")
-
-
 def pin_of(folder: Path) -> Pin:
     entry = entry_of(card_in(folder))
     return Pin(

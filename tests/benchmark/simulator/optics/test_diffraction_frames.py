@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,12 +19,10 @@ from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction import Spectrum
 from benchmark.simulator.optics.projection import Camera
-from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 
-ROOT = Path(__file__).parents[4]
 NAME = "cmos-single-aperture-pinhole"
 GREEN = Spectrum((550.0,), (1.0,))
 GREEN_MM = 550e-6
@@ -277,27 +271,6 @@ def test_bound_of_the_pinhole_falls_with_the_square_root_of_the_photons() -> Non
         bound = cramer_rao(sensor, scene, sensor.fixed_pattern("test"), setup.irradiance)
         found.append(bound.angle_deg)
     assert found[0] / found[1] == pytest.approx(2.0, rel=0.01)
-
-
-@pytest.mark.slow
-def test_frames_depend_on_neither_process_nor_batch() -> None:
-    code = f"""
-import hashlib
-from benchmark import datasets
-found = datasets.get({NAME!r}).generate("nominal", "test", 20)
-print(hashlib.sha256(found.observations.tobytes()).hexdigest())
-"""
-    run = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    preset = datasets.get(NAME)
-    scene, pattern = preset.scene("nominal", "test"), preset.fixed_pattern("nominal")
-    streams = NoiseStreams.named(NAME, preset.version, "nominal", "test")
-    sensor = preset.setups["nominal"].sensor
-    frames = np.concatenate(
-        [sensor.observe(scene.part(start, start + 7), pattern, streams) for start in (0, 7, 14)]
-    )[:20]
-    assert hashlib.sha256(frames.tobytes()).hexdigest() == run.stdout.strip()
 
 
 def test_what_cannot_be_diffracted_is_refused() -> None:

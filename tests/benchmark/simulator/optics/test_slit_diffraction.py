@@ -206,13 +206,6 @@ def test_light_of_a_slit_is_its_open_width_whatever_diffracts() -> None:
         assert np.abs(true - beyond * true / width - found).max() < 2e-3 * width
 
 
-def test_profiles_do_not_depend_on_the_batch() -> None:
-    angles = np.random.default_rng(3).uniform(-60, 60, (70, 2))
-    sensor = aligned("ccd-n-slit")
-    whole = lit(sensor, *angles)
-    assert np.array_equal(whole[[0, 63, 64, 69]], lit(sensor, *angles[[0, 63, 64, 69]]))
-
-
 def test_slits_of_one_shape_are_one_pattern_in_several_places() -> None:
     """A reticle is the sum of its slits, each alone."""
     sensor = aligned("ccd-periodic")

@@ -137,15 +137,6 @@ def test_the_noise_of_a_column_is_its_pixels_own_sum() -> None:
     assert codes.var(axis=0, ddof=1).mean() == pytest.approx(common + own, rel=error)
 
 
-def test_batches_do_not_change_the_noise_of_columns() -> None:
-    sensor = sensor_of("cmos-single-aperture", ALL)
-    scene, unit = scene_of(sensor, 4), sensor.fixed_pattern("unit")
-    whole = sensor.observe(scene, unit, NoiseStreams.named("noise"))
-    streams = NoiseStreams.named("noise")
-    parts = [sensor.observe(scene.part(n, n + 2), unit, streams) for n in (0, 2)]
-    assert np.array_equal(whole, np.concatenate(parts))
-
-
 def test_full_frames_read_what_is_expected() -> None:
     """Mean of many frames: within 5 standard errors of each pixel's own noise, all but one."""
     errors = replace(ALL, column_noise_e=0.0)

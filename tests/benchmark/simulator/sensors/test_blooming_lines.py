@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import from_angles
-from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.blooming_lines import BloomingLineSensor
 from benchmark.simulator.sensors.line_sensor import LineSensor
@@ -87,18 +85,6 @@ def test_saturation_costs_accuracy_but_little_is_lost() -> None:
     """Eight times the light, tops cut flat: edges and the overflow still tell."""
     nominal, bright = (PRESET.bound(c, n=20).rms_deg for c in ("nominal", "saturated"))
     assert 0.3 * nominal < bright < 2 * nominal
-
-
-def test_profiles_do_not_depend_on_the_batch() -> None:
-    sensor, pattern = saturated(), PRESET.fixed_pattern("saturated")
-    scene = scene_over((0, 0), (31, -42), (-60, 60), (5, 5))
-    seen = []
-    for cuts in ((0, 4), (0, 1, 3, 4)):
-        streams = NoiseStreams.named("test", "lines")
-        parts = [sensor.observe(scene.part(a, b), pattern, streams) for a, b in pairwise(cuts)]
-        seen.append(np.concatenate(parts))
-    assert np.array_equal(*seen)
-    assert seen[0].max() <= 4095
 
 
 def test_a_converter_below_the_full_well_is_refused() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,9 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from benchmark import datasets
-from benchmark.datasets import Samples, samples_hash
 from benchmark.simulator.light.sun_disc import from_angles
-from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.blooming import BloomingSensor, spill
 
@@ -152,22 +149,6 @@ def test_the_statistics_of_the_bound_have_the_variance_they_state() -> None:
     assert strong.sum() >= 4
     assert over.mean(axis=0) == pytest.approx(expected[0, -1, strong], rel=1e-3)
     assert np.mean(over.var(axis=0, ddof=1) / stated) == pytest.approx(1.0, abs=0.1)
-
-
-@pytest.mark.parametrize("lens", ["ccd-lens", "cmos-lens"])
-@pytest.mark.parametrize("condition", ["nominal", "saturation-clouds"])
-def test_batches_do_not_change_the_pictures(lens: str, condition: str) -> None:
-    preset = datasets.get(lens)
-    sensor, pattern = preset.setups[condition].sensor, preset.fixed_pattern(condition)
-    scene = scene_of([(0.0, 0.0), (6.1, -14.2), (-11.0, 17.5), (3.0, 3.0)])
-    digests = set()
-    for cuts in ((0, 4), (0, 1, 3, 4)):
-        streams = NoiseStreams.named("test", "batches")
-        frames = np.concatenate(
-            [sensor.observe(scene.part(a, b), pattern, streams) for a, b in pairwise(cuts)]
-        )
-        digests.add(samples_hash(Samples(frames, scene.sun, scene.origin_px)))
-    assert len(digests) == 1
 
 
 def test_a_converter_below_the_full_well_is_refused() -> None:
