@@ -48,25 +48,6 @@ def test_find_a_study_see_how_it_runs_and_its_board(wide: Visit) -> None:
     assert wide.complaints == []
 
 
-def test_glossary(narrow: Visit) -> None:
-    page = narrow.page
-    page.goto(narrow.address + "/studies/Chang2008")
-    word = page.locator("a.term", has_text="bound").first
-    word.click()
-    tip = page.locator(".tip")
-    expect(tip).to_contain_text("Cramer-Rao bound")
-    box = tip.bounding_box()
-    assert box is not None
-    assert box["x"] >= 0
-    assert box["x"] + box["width"] <= 390
-    page.keyboard.press("Escape")
-    expect(tip).to_have_count(0)
-    word.click()
-    tip.get_by_role("link").click()
-    page.wait_for_url("**/glossary#term-bound")
-    expect(page.locator(":target")).to_contain_text("Cramer-Rao", ignore_case=True)
-
-
 @pytest.fixture
 def plain(browser: Browser, address: str) -> Iterator[Page]:
     """A page without scripts."""

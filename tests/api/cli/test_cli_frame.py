@@ -1,6 +1,5 @@
 """What every command of `sunatlas` keeps: quick help, one-line errors, exit codes, quiet pipes."""
 
-import os
 import re
 import subprocess
 import sys
@@ -10,23 +9,10 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli import command_line
-from api.cli.command_line import COMMANDS, DEBUG, app
+from api.cli.command_line import COMMANDS, app
 
 ROOT = Path(__file__).resolve().parents[3]
-SUNATLAS = (sys.executable, "-m", "api.cli.command_line")
 HEAVY = ("pandas", "cv2", "scipy", "plotly", "numba", "numpy", "fastapi", "frictionless", "rich")
-
-
-def sunatlas(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*SUNATLAS, *arguments],
-        cwd=ROOT,
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
 
 
 def invoke(*arguments: str):
@@ -68,28 +54,3 @@ def test_a_call_that_asks_nothing_is_told_what_can_be_asked_and_is_2(arguments):
     assert shown.stdout == invoke(*arguments, "--help").stdout
     assert "Commands:" in shown.stdout
     assert shown.stderr == ""
-
-
-@pytest.mark.slow
-def test_tracebacks_are_kept_for_those_who_ask():
-    arguments = ("dataset", "describe", "no-such-dataset")
-    assert "Traceback" not in sunatlas(*arguments, **{DEBUG: ""}).stderr
-    shown = sunatlas(*arguments, **{DEBUG: "1"})
-    assert shown.returncode == 1
-    assert "Traceback" in shown.stderr
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("form", ["table", "json"])
-def test_a_reader_that_leaves_early_hears_nothing(form):
-    process = subprocess.Popen(
-        [*SUNATLAS, "studies", "--format", form],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    assert process.stdout is not None
-    process.stdout.close()
-    _, said = process.communicate(timeout=600)
-    assert process.returncode == 1
-    assert said == b""

@@ -72,22 +72,6 @@ def test_somebody_else_s_directory_is_not_replaced(name, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "size"),
-    [*(("deposit", size) for size in (10_000, 1_000_000, 5_000_000))],
-)
-def test_a_full_disk_leaves_nothing_and_says_one_sentence(name, size, tmp_path):
-    """At samples, tables and database; at the first file and at a page; at arrays."""
-    process = start(size, tmp_path / "new" / "folder" / "out", name)
-    _, err = process.communicate(timeout=600)
-    said = [line for line in err.splitlines() if not line.startswith(("building ", "writing "))]
-    assert process.returncode == 1, err
-    assert len(said) == 1, err
-    assert "File too large" in said[0] or "error" in said[0].lower(), err
-    assert everything(tmp_path) == []
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
 def test_a_command_that_is_stopped_leaves_nothing(name, end, tmp_path):

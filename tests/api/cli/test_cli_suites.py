@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from api.cli import measuring
 from api.cli.command_line import app
-from benchmark.leaderboard.scope import UNITS, first
+from benchmark.leaderboard.scope import first
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import Store
 from benchmark.running.runner import run
@@ -42,28 +42,6 @@ def small(working: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(planning, "every_part", lambda: few)
     monkeypatch.setattr(measuring, "PUBLISHED", working.parent / "published")
     return working
-
-
-@pytest.mark.slow
-def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
-    planned = sunatlas("plan", "--format", "json")
-    document = json.loads(planned.stdout)
-    assert {row["why"] for row in document["missing"]} == {"new"}
-    # the first condition only: what follows depends on the scores
-    assert {row["condition"] for row in document["missing"]} == {"nominal"}
-    table = sunatlas("plan").stdout
-    assert "standard: to be measured" in table
-    assert table.count("new") == 2, "a row a data set"
-
-    done = json.loads(sunatlas("run", "--suite", "standard", "--format", "json").stdout)
-    measured = Store(small).scores()
-    assert done["sources"]["measured"] == len(measured) > len(document["missing"])
-    assert done["sources"]["published"] == done["sources"]["kept"] == 0
-    assert {cell.unit for cell in measured} == set(range(UNITS))
-    again = json.loads(sunatlas("run", "--suite", "standard", "--format", "json").stdout)
-    assert again["scores"] == done["scores"]
-    assert again["sources"]["kept"] == len(measured)
-    assert "0 of" in sunatlas("plan").stderr
 
 
 @pytest.fixture

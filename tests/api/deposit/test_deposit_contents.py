@@ -93,13 +93,6 @@ def test_a_name_that_needs_quotes_is_refused(name):
         sql_name(name)
 
 
-def test_a_reference_to_nothing_does_not_go_out(bundle, tmp_path):
-    path = bundle / "survey" / "venues.csv"
-    path.write_text(path.read_text("utf-8").replace("Ali2011", "Nobody2011", 1), "utf-8")
-    with pytest.raises(sqlite3.IntegrityError, match="venues"):
-        write_other_forms(bundle, {"resources": described(bundle)}, tmp_path)
-
-
 def test_a_cell_of_another_type_does_not_go_out(bundle, tmp_path):
     path = bundle / "survey" / "studies.csv"
     path.write_text(path.read_text("utf-8").replace(",2008,", ",MMVIII,", 1), "utf-8")

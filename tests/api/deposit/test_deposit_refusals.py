@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -50,26 +49,6 @@ def test_what_reads_tables_has_no_way_to_the_web_while_a_bundle_is_verified() ->
         resource = Resource(path="http://127.0.0.1:9/one.csv")
         with pytest.raises(FrictionlessException, match="a bundle is verified offline"):
             resource.open()  # type: ignore[no-untyped-call]
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda out: out.write_text("mine"), "expected a directory or nothing"),
-        (lambda out: out.symlink_to(out.parent), "expected a directory or nothing"),
-        (lambda out: (out / "deep").mkdir(parents=True), None),
-        (lambda out: [out.mkdir(), (out / "thesis.txt").write_text("")], "holds thesis.txt, which"),
-    ],
-)
-def test_a_place_that_holds_anything_else_is_not_built_over(
-    tmp_path: Path, make: Callable[[Path], object], message: str | None
-) -> None:
-    out = tmp_path / "out"
-    make(out)
-    before = sorted(tmp_path.rglob("*"))
-    with pytest.raises((DepositError, OSError), match=message):
-        build(out)
-    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_an_earlier_bundle_may_be_built_over_and_a_changed_one_may_not(small: Path) -> None:

@@ -9,10 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from api.cli.command_line import app
-from api.deposit import rescore_script, rescoring
+from api.deposit import rescoring
 from benchmark.contract import Cell
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.preset import Preset
@@ -66,24 +64,6 @@ def test_a_changed_sample_and_a_changed_digit_are_found(bundle):
     assert "rms_deg" in of_sample.differing
     assert "repeatability_deg" not in of_sample.differing
     assert of_digit.differing == ["rms_deg"]
-
-
-def test_the_command_says_how_many_there_are_and_what_came_of_them(built):
-    shown = CliRunner().invoke(
-        app, ["deposit", "rescore", str(built.directory), "--cells", "2", "--seed", "5"]
-    )
-    assert shown.exit_code == 0, shown.stderr
-    assert re.search(r"\d+ of \d+ scores can be measured from the samples", shown.stderr)
-    assert "2 of 2 scores are the same to the last digit" in shown.stderr
-
-
-def test_the_script_refuses_code_of_another_digest(bundle, monkeypatch):
-    monkeypatch.setattr(rescore_script, "HERE", bundle)
-    archive = rescore_script.code_archive()
-    assert archive.parent == bundle / "code"
-    archive.write_bytes(archive.read_bytes() + b"x")
-    with pytest.raises(SystemExit, match="SHA-256 is not that of"):
-        rescore_script.code_archive()
 
 
 @pytest.mark.slow

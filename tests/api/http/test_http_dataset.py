@@ -1,7 +1,5 @@
 """/v1/datasets/{name} and its picture: the card with bounds and hashes, drawn once."""
 
-import cv2
-import numpy as np
 import pytest
 
 from api.server.app import create_app
@@ -45,25 +43,6 @@ def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):
     assert rows["nominal", "calibration"]["data_hash"] is None
     table = pinned.table(f"/v1/datasets/{NAME}")
     assert [row["data_hash"] for row in table] == [row["data_hash"] or "" for row in card["data"]]
-
-
-@pytest.mark.slow
-def test_the_picture_is_kept_and_revalidated(client_of):
-    client = client_of(create_app())
-    path = f"/v1/datasets/{NAME}/preview.png"
-    first = client.get(path)
-    assert first.status_code == 200
-    assert first.headers["content-type"] == "image/png"
-    image = cv2.imdecode(np.frombuffer(first.content, np.uint8), cv2.IMREAD_COLOR)
-    assert image.shape[1] == 1000
-    again = client.get(path, headers={"If-None-Match": first.headers["etag"]})
-    assert (again.status_code, again.content) == (304, b"")
-    head = client.request("HEAD", path)
-    assert head.content == b""
-    assert head.headers["etag"] == first.headers["etag"]
-    zipped = client.get(path, headers={"Accept-Encoding": "gzip"})
-    assert "content-encoding" not in zipped.headers
-    assert zipped.content == first.content
 
 
 def test_realism_has_a_row_for_every_dataset_and_board_and_card_name_idealisations(atlas):

@@ -31,12 +31,3 @@ def test_a_question_by_an_old_name_is_that_by_the_new(atlas, old, new):
     first, second = atlas.get(old), atlas.get(new)
     assert first.status_code == second.status_code == 200
     assert first.json() == second.json()
-
-
-def test_a_body_by_an_old_name_is_that_by_the_new(atlas):
-    answers = [
-        atlas.post("/v1/recommendations", json={name: ["albedo"]})
-        for name in ("survive", "tolerate")
-    ]
-    assert answers[0].status_code == 200
-    assert answers[0].json()["architectures"] == answers[1].json()["architectures"]

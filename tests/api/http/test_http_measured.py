@@ -140,29 +140,6 @@ def test_results_are_the_stored_numbers_of_the_standard_unit(measured):
     assert known == {}
 
 
-@pytest.mark.slow
-def test_the_leaderboard_ranks_by_error_within_a_condition(measured):
-    board = measured.walk(f"/v1/leaderboard/{CMOS}?condition=nominal&limit=1")
-    assert [(r["rank"], r["tied"], r["extractor"], r["model"]) for r in board] == [
-        (1, True, "bctm", "lsq"),
-        (3, False, "bcm", "spm"),
-        (4, False, "tm", "spm"),  # the smallest error, of too few answers
-        (1, True, "bctm", "spm"),  # behind the best of each extractor
-        (None, False, "bcm", "lsq"),
-    ]
-    assert (board[0]["low_deg"], board[0]["high_deg"]) == (0.01, 0.012)
-    assert board[3]["unit_rms_deg"] == [0.02, *UNITS["spm"]]
-    assert (board[1]["unit_rms_deg"], board[1]["low_deg"]) == ([0.5], None)
-    assert (board[0]["time_ratio"], board[0]["latency_us"]) == (2.25, 9.0)
-    assert board[1]["time_ratio"] is board[1]["latency_us"] is None  # not timed
-    assert board[-1]["status"] == "failed"
-    assert board[-1]["reason"] == "fit: too few samples"
-    whole = measured.get("/v1/leaderboard").json()
-    assert [d["name"] for d in whole["datasets"]] == [CMOS, QPD]
-    assert whole["datasets"][0]["conditions"] == ["nominal", "misaligned"]
-    assert len(measured.table("/v1/leaderboard")) == len(CELLS)
-
-
 def test_the_leaderboard_ranks_by_the_error_over_a_part_of_the_field(measured):
     address = f"/v1/leaderboard/{CMOS}?condition=nominal&field_deg="
     board = measured.walk(f"{address}10")

@@ -20,8 +20,6 @@ from tests.api.pages.test_pages_content import text_of
 
 LABEL = re.compile(r"\b(?:sec|tab|fig|rq|rqsum):\w+")
 VOID = {"meta", "link", "img", "input", "br", "hr"}
-#: Parts of the atlas that a service has beside the pages.
-BESIDE = ("/guide",)
 
 
 class Page(HTMLParser):
@@ -116,28 +114,3 @@ def test_there_is_a_page_of_every_route() -> None:
     assert len(routes) > 15
     for route in routes:
         assert any(route.path_regex.fullmatch(path) for path in paths), route.path
-
-
-@pytest.mark.slow
-def test_every_link_within_the_atlas_leads_somewhere(atlas: Client) -> None:
-    """The crawl starts at one page of every kind and follows what these link to, one step."""
-    leads: dict[str, str] = {}
-    anchors: dict[str, set[str]] = {}
-    for kind, start in KINDS.items():
-        if kind == "answer, refused":
-            continue  # its links ask the same again
-        for tag, link in Page(atlas.get(start, accept="text/html").text).attributes("href"):
-            target = urlsplit(link)
-            if tag == "a" and not target.netloc and not link.startswith(BESIDE) and target.path:
-                leads.setdefault(link, start)
-    assert len(leads) > 400
-    pages: dict[str, Page] = {}
-    for link, start in leads.items():
-        path, _, fragment = link.partition("#")
-        if path not in pages:
-            response = atlas.get(path, accept="text/html, */*;q=0.8")
-            assert response.status_code == 200, (start, link)
-            pages[path] = Page(response.text if "html" in response.headers["content-type"] else "")
-            anchors[path] = {value for _, value in pages[path].attributes("id")}
-        if fragment:
-            assert fragment in anchors[path], (start, link)

@@ -171,19 +171,6 @@ def test_a_level_error_is_agnostic_of_the_noise_and_one_at_the_bound_is_not():
     assert only(SWEPT[level.name](floor))[1] == "50% found at noise `10`"
 
 
-def test_a_design_that_was_refused_is_no_outcome():
-    refused = {**row("size", "2"), "n": 0, "rms": None, "status": "refused", "reason": "too small"}
-    rows = [refused, *(row("size", str(r), float(r)) for r in (4, 8))]
-    assert not math.isnan(SWEPT["Resolution scaling"](rows)[0][0])
-    with pytest.raises(NotMeasuredError, match=r"no reference feature .* `tracking`"):
-        SWEPT["Feature tracking"](rows)
-    with pytest.raises(NotMeasuredError, match=r"nothing.*`noise`"):
-        SWEPT["Robust to noise"]([])
-    rows = [row("missing", "0.2"), {**refused, "sweep": "missing", "point": "0"}]
-    with pytest.raises(NotMeasuredError, match=r"disc.*`0`"):
-        SWEPT["Robust to missing features"](rows)
-
-
 def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
     rows = [
         score(rms_deg=0.4),
@@ -200,18 +187,6 @@ def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
     assert best["Blooming features"].value == 0.1
     with pytest.raises(NotMeasuredError, match="no published score"):
         SCORED["CCD Detector"]([])
-
-
-def test_a_mask_that_a_method_was_never_given_is_no_outcome_and_silence_is_one():
-    seldom = score(availability=0.4, rms_deg=0.01)
-    value, why = only(SCORED["CMOS Detector"]([seldom]))
-    assert math.isnan(value)
-    assert re.findall(r"[\d.]+%?", why) == ["40%"]
-    with pytest.raises(NotMeasuredError, match="no data set of this kind"):
-        SCORED["CCD Detector"]([seldom])
-    refused = score(status="refused", availability=None, rms_deg=None, reason="too few lights")
-    with pytest.raises(NotMeasuredError, match=r"\bd\b.*\bm\b.*refused, too few lights"):
-        SCORED["CMOS Detector"]([refused])
 
 
 def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path):

@@ -57,22 +57,6 @@ def test_an_albedo_model_takes_off_what_no_correction_leaves(parts):
 
 
 @pytest.mark.slow
-def test_seeds_and_units_are_all_measured():
-    found = [*networks.seeds(chosen=(0, 1)), *networks.units(others=(1,))]
-    assert [(row.question, row.method) for row in found] == [
-        ("seeds", "dnn"),
-        ("seeds", "dnn"),
-        ("units", "dnn of unit 0"),
-        ("units", "dnn of its own"),
-        ("units", "no correction of its own"),
-    ]
-    assert all(0.1 < row.rms_deg < 10.0 and row.answered > 0.9 for row in found)
-    assert found[0].rms_deg != found[1].rms_deg
-    # gains of another unit are none that the network was trained on
-    assert found[2].rms_deg > found[3].rms_deg
-
-
-@pytest.mark.slow
 def test_a_network_answers_where_it_was_trained_and_nowhere_else():
     """On a mask of many spots: where all of them are seen, or wherever some are."""
     found = {(one.method, one.case): one for one in networks.fields()}

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import cv2
 import numpy as np
 import pytest
@@ -14,7 +10,6 @@ from api.previews import published_preview
 from benchmark import datasets
 from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
 
-ROOT = Path(datasets.__file__).parents[2]
 PAPER = (255, 255, 255)
 
 
@@ -57,24 +52,3 @@ def test_a_spot_is_drawn_where_it_is():
     bright = tile > 0.8 * tile.max()
     at_y, at_x = (float(np.mean(k)) for k in np.nonzero(bright))
     assert (at_x / 3, at_y / 3) == pytest.approx((x + 1 / 3, y + 1 / 3), abs=0.7)
-
-
-def test_a_user_s_settings_change_no_picture():
-    import matplotlib as mpl
-
-    preset = datasets.get("qpd-single-aperture")
-    plain = preview_png(preset)
-    with mpl.rc_context({"lines.linestyle": ":", "font.size": 30, "figure.facecolor": "black"}):
-        assert preview_png(preset) == plain
-        assert mpl.rcParams["font.size"] == 30, "and are as they were"
-
-
-@pytest.mark.slow
-def test_matplotlib_is_loaded_by_pictures_alone():
-    code = (
-        "import sys\n"
-        "import api.server.app, benchmark.datasets.export, benchmark.datasets.preview_overlay\n"
-        "import benchmark.running.task, benchmark.sweeps.plots, benchmark.experiments.sweeps\n"
-        "assert 'matplotlib' not in sys.modules\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from benchmark import datasets
 from benchmark.datasets import Samples
-from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
+from benchmark.datasets.conditions.flight import FlightPreset
 from benchmark.metrics.bounds import cramer_rao
-from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.sensors.faces import FaceSensor
 
@@ -181,20 +178,3 @@ def test_albedo_vanishes_in_eclipse_by_geometry(made) -> None:
         Earth(), leg.sun_body[eclipse], leg.nadir_body[eclipse], preset.fixed_pattern("nominal")
     )
     assert np.abs(dark).max() < 1e-12
-
-
-def test_a_flight_that_does_not_fit_is_refused() -> None:
-    preset = PRESETS["pd-orbit"]
-    with pytest.raises(TypeError, match=r"directions.*AngleField"):
-        replace(preset, directions=datasets.get("cmos-single-aperture").directions)
-    higher = replace(flight_of("pd-orbit").flight, orbit=CircularOrbit(altitude_km=700.0))
-    with pytest.raises(ValueError, match=r"orbit's.*700\.0.*600\.0"):
-        replace(preset, directions=higher)
-    ground = datasets.get("pd-maskless-cube").setups
-    with pytest.raises(TypeError, match=r"\bnominal\b.*thermal"):
-        replace(preset, setups=ground)
-    with pytest.raises(ValueError, match="samples and step_s must be positive"):
-        Span(0.0, 0, 10.0)
-    with pytest.raises(ValueError, match="'train'"):
-        preset.generate("nominal", "train")
-    assert isinstance(preset.directions, Flight)

@@ -10,7 +10,6 @@ import pytest
 from benchmark import datasets
 from benchmark.datasets.repeats import Repeats
 from benchmark.datasets.units import assemble, tolerance_of, tolerances
-from benchmark.simulator.sensors.frames import FrameSensor
 
 PRESETS = {name: datasets.get(name) for name in datasets.names()}
 
@@ -81,21 +80,6 @@ def test_another_unit_sees_the_same_suns_otherwise(name: str) -> None:
     assert other.geometry == standard.geometry, "the design is what it was"
     again = PRESETS[name].for_unit(1).generate("nominal", "test", 8)
     assert again.observations.tobytes() == two.observations.tobytes()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", PRESETS)
-def test_the_last_condition_of_another_unit_can_be_generated(name: str) -> None:
-    preset = PRESETS[name].for_unit(3)
-    condition = preset.conditions[-1]
-    sensor = preset.condition(condition).sensor
-    for split in ("calibration", "test", "repeat"):
-        assert len(preset.generate(condition, split, 2).sun) == 2
-        if isinstance(sensor, FrameSensor):
-            size = (sensor.detector.columns, sensor.detector.rows)
-            origin = np.asarray(preset.scene(condition, split, 40).origin_px)
-            assert (origin >= 0).all()
-            assert (origin + sensor.window_px <= size).all()
 
 
 def test_errors_of_assembly_are_uniform_within_the_tolerance_of_unit_0() -> None:

@@ -15,7 +15,7 @@ from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import cluster, runner
 from benchmark.running.cluster import ClusterError
-from benchmark.running.runner import Summary, run, stale
+from benchmark.running.runner import Summary, run
 
 PLANNED = 10  # one condition of the first data set, two of the others, two extractors on each
 
@@ -62,21 +62,6 @@ def test_two_dask_workers_give_the_bytes_of_a_local_run_and_keep_stages(
     assert measured(again, scheduler=scheduler, others=[store]).computed == PLANNED
     assert "process" not in log.read_text()
     assert contents(again) == contents(store) == contents(local)
-
-
-@pytest.mark.slow
-def test_a_task_that_kills_every_worker_ends_the_run_and_the_next_does_what_is_missing(
-    scheduler: str, tmp_path: Path
-) -> None:
-    deadly, store = tmp_path / "deadly", Store(tmp_path / "store")
-    deadly.touch()
-    with pytest.raises(ClusterError, match="what was measured before is kept: KilledWorker"):
-        measured(store, str(deadly), scheduler=scheduler)
-    assert not store.components_path.exists()
-    deadly.unlink()
-    measured(store, str(deadly), scheduler=scheduler)
-    parts = fake_cluster.parts(deadly=str(deadly))
-    assert stale(cells(parts=parts), store, parts=parts) == []
 
 
 def test_a_worker_of_other_code_is_refused(

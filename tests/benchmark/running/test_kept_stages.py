@@ -170,21 +170,6 @@ def test_any_number_of_workers_shares_what_is_kept(tmp_path):
     assert keys[0] == keys[1] != set()
 
 
-@pytest.mark.slow
-def test_of_what_is_damaged_or_gone_the_stage_is_made_again(store, tmp_path, doings):
-    known = parts()
-    measured(store, known)
-    before = numbers(store)
-    for path in (store.work_directory / "stages").glob("??/*"):
-        path.write_bytes(path.read_bytes()[:-1])
-    again = Store(tmp_path / "again")
-    shutil.copytree(store.work_directory / "stages", again.work_directory / "stages")
-    doings()
-    measured(again, known)
-    assert {"generate", "extract", "fit"} <= doings()
-    assert numbers(again) == before
-
-
 def test_what_is_kept_beside_another_store_is_read_and_left_alone(store, tmp_path, doings):
     known = parts()
     measured(store, known)

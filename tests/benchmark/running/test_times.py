@@ -14,8 +14,6 @@ from benchmark.progress import silent
 from benchmark.results.times import read_times
 from benchmark.running import times
 
-TWO = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
-
 
 def pipelines(known: Parts) -> set[tuple[str, str, str]]:
     return {(cell.dataset, cell.extractor, cell.model) for cell in cells(parts=known)}
@@ -55,25 +53,3 @@ def test_what_does_not_run_has_a_row_without_a_time(tmp_path: Any) -> None:
     found = read_times(tmp_path).rows
     assert set(found) == pipelines(known)
     assert {place[2] for place, one in found.items() if one.ratio} == {"fake-least-squares"}
-
-
-def test_an_interrupted_call_leaves_whole_data_sets_and_the_next_goes_on(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Any
-) -> None:
-    def interrupt(done: int, _total: int, _what: str) -> None:
-        if done:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(times, "_processor", lambda: "first")
-    with pytest.raises(KeyboardInterrupt):
-        times.update(tmp_path, interrupt, parts=TWO)
-    before = read_times(tmp_path).rows
-    assert {place[0] for place in before} == {"fake-diodes"}
-    monkeypatch.setattr(times, "_processor", lambda: "second")
-    assert times.update(tmp_path, silent, parts=TWO) == 2
-    found = read_times(tmp_path)
-    assert set(found.rows) == pipelines(TWO)
-    assert {place: found.rows[place] for place in before} == before
-    assert found.machine is not None
-    assert (found.machine.processor, found.machine.also_on) == ("first", ["second"])
-    assert times.update(tmp_path, silent, parts=TWO, again=True) == 4

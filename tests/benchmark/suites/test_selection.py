@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import fake_atlas
-import fake_plan
 import pytest
 
 from algorithms.chain import Chain
 from benchmark.contract import Cell, UnknownNameError
-from benchmark.plan.parts import Parts, installed_parts
+from benchmark.plan.parts import installed_parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.suites.selection import SUITES, suite
 from registry.studies import facts
@@ -37,34 +33,6 @@ def test_quick_meets_every_category_of_models_that_has_one(quick: list[Cell]) ->
 def test_quick_needs_nothing_that_is_not_published_anyway(quick: list[Cell]) -> None:
     assert set(quick) <= set(Store(PUBLISHED).scores())
     assert {cell.unit for cell in quick} == {0}
-
-
-def test_what_is_new_takes_its_place_in_quick_and_moves_nothing_else() -> None:
-    class Another(fake_atlas.Currents):
-        about = replace(fake_atlas.CURRENTS, name="fake-z-another")
-
-    class Worse(fake_atlas.LeastSquares):
-        about = replace(fake_atlas.LeastSquares.about, name="fake-z-worse")
-
-    before = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
-    after = Parts(
-        {**before.presets, "fake-third": fake_atlas.Diodes(name="fake-third")},
-        {**before.extractors, "fake-z-another": Another},
-        {**before.models, "fake-z-worse": Worse},
-    )
-    first, second = (set(suite("quick").select({}, parts)) for parts in (before, after))
-    one, other = "fake-currents", "fake-least-squares"
-    assert first == {
-        Cell("fake-diodes", "quiet", one, other),
-        Cell("fake-diodes", "quiet", "fake-gaps", other),
-        Cell("fake-second", "quiet", one, other),
-    }
-    assert second - first == {
-        Cell("fake-diodes", "quiet", "fake-z-another", other),
-        Cell("fake-diodes", "quiet", one, "fake-z-worse"),
-        Cell("fake-third", "quiet", one, other),
-    }
-    assert first < second
 
 
 def test_an_unknown_suite_is_refused_with_the_nearest() -> None:

@@ -12,11 +12,10 @@ import pytest
 
 from algorithms.contract import AboutExtractor, FeatureKind, Observation
 from algorithms.discovery import discover_extractors
-from benchmark.experiments import sweeps as experiment
 from benchmark.experiments.sweeps import Sweeps
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
-from benchmark.running.experiment import list_due, update
+from benchmark.running.experiment import update
 from benchmark.sweeps import plan as sweep_plan
 from benchmark.sweeps.record import RECORD, swept
 from benchmark.synthetic_features.series import SWEEPS
@@ -98,36 +97,6 @@ def test_the_closed_form_of_balances_is_at_the_bound(made):
     ]
     assert len(found) == 7
     assert found == pytest.approx([1.0] * 7, abs=0.08)
-
-
-def test_what_is_current_stays_and_failures_are_tried_again(made):
-    before = table(made)
-    assert {why for _, why in list_due(of(made))} == {"failed"}
-    assert computed(made) == POINTS
-    assert table(made) == before
-    assert computed(made, {"plain": Plain}) == 0
-    assert {row["extractor"] for row in swept(made)} == {"plain"}
-
-
-def test_a_method_of_other_code_is_measured_again_alone(tmp_path):
-    second = type("Second", (Plain,), {"about": dataclasses.replace(Plain.about, name="second")})
-    both = {"plain": Plain, "second": second}
-    assert computed(tmp_path, both) == 2 * POINTS
-    before = swept(tmp_path)
-    newer = type("Newer", (second,), {"about": dataclasses.replace(second.about, version=2)})
-    assert computed(tmp_path, {"plain": Plain, "second": newer}) == POINTS
-    version = "extractor_version"
-    assert [{**row, version: 0} for row in swept(tmp_path)] == [
-        {**row, version: 0} for row in before
-    ]
-    assert {row[version] for row in swept(tmp_path) if row["extractor"] == "second"} == {2}
-
-
-@pytest.mark.parametrize("name", ["quadrants", "faces"])
-def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name):
-    digests = experiment.series_digests()
-    monkeypatch.setattr(experiment, "series_digests", lambda: {**digests, name: "0" * 16})
-    assert computed(made, {"plain": Plain}) == (POINTS if name == "quadrants" else 0)
 
 
 def test_every_method_of_the_survey_has_a_noise_sweep():

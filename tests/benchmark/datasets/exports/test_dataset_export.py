@@ -20,7 +20,6 @@ from benchmark.datasets.corrected import corrections
 from benchmark.datasets.export import CARD, ExportError, export
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.export_verification import verify
-from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.results.store import PUBLISHED, Store
 from files.checksums import CHECKSUMS, write_checksums
 from files.reading import FileRefusedError
@@ -113,45 +112,6 @@ def test_other_people_s_tools_check_the_sums(made):
         check=False,
     )
     assert run.returncode == 0, run.stderr
-
-
-@pytest.mark.slow
-def test_the_arrays_are_the_first_samples_of_the_data_set_with_its_bound(made):
-    card = made.card
-    preset = datasets.get(card["name"])
-    for file in card["files"]:
-        if file["kind"] != "arrays":
-            continue
-        condition, split = file["condition"], file["split"]
-        whole = preset.generate(condition, split)
-        bound = preset.bound(condition, split, FEW)
-        with np.load(made.directory / file["path"], allow_pickle=False) as arrays:
-            assert set(arrays.files) == set(file["arrays"]) <= set(card["arrays"])
-            for name, expected in whole.arrays().items():
-                assert (name in arrays.files) == (expected is not None)
-                if expected is not None:
-                    assert arrays[name].dtype == expected.dtype
-                    np.testing.assert_array_equal(arrays[name], expected[:FEW])
-            np.testing.assert_array_equal(arrays["bound_deg"], bound.angle_deg)
-            np.testing.assert_array_equal(arrays["bound_alpha_deg"], bound.alpha_deg)
-            np.testing.assert_array_equal(arrays["bound_beta_deg"], bound.beta_deg)
-            np.testing.assert_array_equal(arrays["observable"], bound.observable)
-            if bound.unit_angle_deg is not None:
-                np.testing.assert_array_equal(arrays["bound_unit_deg"], bound.unit_angle_deg)
-            for name, about in file["arrays"].items():
-                assert about == {
-                    "dtype": arrays[name].dtype.str,
-                    "shape": list(arrays[name].shape),
-                }
-            seen = arrays["bound_deg"][arrays["observable"]]
-        if seen.size:
-            assert file["bound_rms_deg"] == pytest.approx(
-                np.sqrt(np.mean(seen**2)), rel=0.5 * 10 ** (1 - SIGNIFICANT_DIGITS)
-            )
-        else:
-            assert file["bound_rms_deg"] is None
-        assert file["samples"] == FEW
-        assert file["published_data_hash"] is None, "five samples are not the published data"
 
 
 def test_tables_read_back_as_the_arrays(made):

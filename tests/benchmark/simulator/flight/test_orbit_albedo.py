@@ -144,8 +144,3 @@ def test_albedo_moves_the_balance_of_a_quadrant_sensor_by_many_times_its_bound()
         on_balance("pd-code-dial")
     with pytest.raises(TypeError, match="pd-orbit has no condition 'albedo'"):
         on_balance("pd-orbit")
-
-
-def test_other_sensors_are_refused() -> None:
-    with pytest.raises(TypeError, match="qpd-single-aperture has no pixel array"):
-        on_aperture("qpd-single-aperture")

@@ -59,26 +59,6 @@ def test_nothing_is_kept_unasked_or_for_another_owner_or_beyond_the_limit():
     assert calls[-1] == 1
 
 
-def test_the_latest_runs_are_kept_beyond_the_limit():
-    """Passes over the same poses come at once."""
-    kept = LightMemory(limit_bytes=1000)
-    calls = []
-
-    def runs(key, count):
-        found = np.array([[0, count]], dtype=np.int32), np.ones(count, dtype=np.float32)
-        return kept.runs(key, lambda: calls.append(key) or found)
-
-    kept.cache_for("dataset")
-    runs("first", 150)
-    for _ in range(3):
-        runs("one", 5), runs("other", 5)
-    assert calls == ["first", "one", "other"]
-    runs("next", 5)  # of three the latest two find room
-    runs("other", 5), runs("one", 5)
-    assert calls == ["first", "one", "other", "next", "one"]
-    assert kept.kept_bytes == 608
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
@@ -132,9 +112,3 @@ def test_tables_are_made_once_for_all_that_share_a_directory(tmp_path):
     alone.mapped(Named(0.1), make)
     assert len(made) == 3
     assert len(list(tmp_path.iterdir())) == 2
-
-
-def test_a_directory_that_cannot_be_written_is_done_without(tmp_path):
-    shared = LightMemory()
-    shared.share_tables(tmp_path / "none")
-    assert shared.mapped(Named(1.0), lambda: np.ones(3)).tolist() == [1.0] * 3

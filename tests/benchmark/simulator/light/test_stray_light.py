@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from shadows import shadows
 
 from benchmark import datasets
-from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.optics.plates import CoverGlass, Plate
@@ -89,15 +88,6 @@ def test_slopes_are_drawn_with_their_spread_from_a_stream_of_their_own() -> None
         assert np.array_equal(getattr(sloping, name), getattr(nominal, name)), name
     with pytest.raises(ValueError, match=r"slope_spread.*\[0.*/ 4 = 0.005\]"):
         UnevenIrradiance(stray=0.02, slope_spread=0.006)
-
-
-def test_a_sensor_blind_to_slopes_is_refused() -> None:
-    preset = datasets.get(NAME)
-    assert isinstance(preset, UnevenPreset)
-    even, _ = sensors()
-    setups = {"nominal": replace(preset.setups["stray-gradient"], sensor=even)}
-    with pytest.raises(TypeError, match="FrameSensor does not see"):
-        replace(preset, setups=setups)
 
 
 angles = st.floats(0.0, 85.0)

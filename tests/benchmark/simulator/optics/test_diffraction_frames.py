@@ -271,12 +271,3 @@ def test_bound_of_the_pinhole_falls_with_the_square_root_of_the_photons() -> Non
         bound = cramer_rao(sensor, scene, sensor.fixed_pattern("test"), setup.irradiance)
         found.append(bound.angle_deg)
     assert found[0] / found[1] == pytest.approx(2.0, rel=0.01)
-
-
-def test_what_cannot_be_diffracted_is_refused() -> None:
-    sensor = pinhole()
-    with pytest.raises(ValueError, match="widest_deg must be in"):
-        replace(sensor, widest_deg=90.0)
-    scene = Scene(np.array([[0.0, 0.0, 1.0]]), np.ones(1), np.zeros(1))
-    with pytest.raises(ValueError, match="origin_px is None"):
-        sensor.lit(scene)

@@ -12,7 +12,6 @@ from bare_pixels import bare
 from shadows import shadows
 
 from benchmark import datasets
-from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth, uniform_direction
 from benchmark.simulator.light.sun_disc import SolarDisc
@@ -156,12 +155,6 @@ def test_thick_foil_takes_the_share_its_walls_shade() -> None:
     )
     tangent = np.array([0.0, 0.5, 1.0, 1.5])
     assert thick[0, 0] / thin[0, 0] == pytest.approx(1.0 - 0.02 * tangent / 0.1, abs=1e-5)
-
-
-def test_a_sensor_that_sees_no_earth_is_refused() -> None:
-    camera = datasets.get("cmos-lens").setups["nominal"].sensor
-    with pytest.raises(ValueError, match="behind openings; got"):
-        with_albedo(camera)
 
 
 def test_full_frames_behind_many_holes_have_the_earth_in_every_way_they_are_made() -> None:

@@ -307,24 +307,3 @@ def test_far_patterns_are_seen_where_light_has_turned(
         row, column = looked_up_at(chief + x, y, way)
         found = math.hypot(row * steps[0, 0], column * steps[0, 1])
         assert found == pytest.approx(turned, rel=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("fields", "said"),
-    [
-        ({"widest_deg": 90.0}, "widest_deg must be in"),
-        ({"skirt": 0.0}, r"skirt.*\(0.*1\).*0.0"),
-    ],
-)
-def test_impossible_diffraction_is_refused(fields, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        sensor_of(0.05, **fields)
-
-
-def test_rectangles_are_refused_unless_they_cast_shadows() -> None:
-    base = sensor_of(0.05)
-    square = Mask((Aperture("rectangle", 0.05, 0.05),))
-    camera = replace(base.camera, mask=square)
-    with pytest.raises(ValueError, match="of round holes"):
-        replace(base, camera=camera)
-    assert replace(base, camera=camera, spectrum=None).spectrum is None

@@ -19,14 +19,12 @@ from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.sensors.position_sensitive import (
     LateralEffect,
-    PositionSensor,
     aperture_rule,
 )
-from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
+from benchmark.simulator.sensors.slit_pairs import DiodePair
 
 IDEAL = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=200.0, bits=24)
 POINT = SolarDisc(diameter_deg=0.0)
@@ -164,12 +162,6 @@ def test_the_spot_stays_on_the_device_all_over_the_field(condition: str) -> None
     assert sensor.lit(lit_by(sun)).sum(axis=1) == pytest.approx(head[:, 2], rel=1e-3)
 
 
-def test_what_is_no_position_sensor_is_refused() -> None:
-    thick = Camera(1.0, Mask((Aperture("round", 0.1, 0.1),), thickness_mm=0.1))
-    with pytest.raises(ValueError, match="behind a thin mask; got thickness_mm"):
-        PositionSensor(thick, LateralEffect(4.0), IDEAL)
-
-
 @given(alpha=st.floats(-50.0, 50.0), beta=st.floats(-50.0, 50.0))
 @settings(deadline=None, derandomize=True, max_examples=40)
 def test_a_thick_slit_narrows_the_strip_of_light(alpha: float, beta: float) -> None:
@@ -187,10 +179,3 @@ def test_a_thick_slit_narrows_the_strip_of_light(alpha: float, beta: float) -> N
         width = 2.8 - 0.1 * abs(tangent)
         assert plus + minus == pytest.approx(width * 0.2 / (2 * 2.8 * 5.0) * sun[0, 2])
         assert (plus - minus) / (plus + minus) == pytest.approx(2 * 0.5 * tangent / width)
-
-
-def test_what_is_no_slit_pair_is_refused() -> None:
-    with pytest.raises(ValueError, match="one slit"):
-        SlitPairSensor(
-            Camera(1.0, Mask((Aperture("round", 1.0, 1.0),))), DiodePair(2.0, 1.0), IDEAL
-        )

@@ -13,15 +13,9 @@ from hypothesis import strategies as st
 from benchmark import datasets
 from benchmark.seeds import generator
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.sensors.events import EventSensor, SpikingArray, departures
+from benchmark.simulator.sensors.events import EventSensor, departures
 
 NAMES = ("event-l-slit", "event-single-aperture")
-
-
-def array(**changes) -> SpikingArray:
-    sensor = datasets.get("event-l-slit").setups["nominal"].sensor
-    assert isinstance(sensor, EventSensor)
-    return replace(sensor.detector, **changes)
 
 
 def seen(name: str, count: int, **changes) -> np.ndarray:
@@ -113,9 +107,3 @@ def test_the_standard_bus_serves_bursts_late_and_loses_none(name: str) -> None:
     delays = loaded[:, :, 2] - free[:, :, 2]
     longest = {"event-l-slit": 1.0, "event-single-aperture": 0.1}[name]
     assert np.nanmax(delays) > longest
-
-
-@pytest.mark.parametrize("service_us", [-0.1, math.nan, math.inf])
-def test_an_impossible_bus_is_refused(service_us: float) -> None:
-    with pytest.raises(ValueError, match="service_us"):
-        array(service_us=service_us)

@@ -156,10 +156,3 @@ def test_the_bound_is_what_a_fit_of_the_pictures_reaches() -> None:
         errors[n] = np.linalg.solve(fisher, slopes.T @ rest)[:2]
     reached = np.degrees(np.sqrt(np.sum(errors.var(axis=0, ddof=1))))
     assert reached == pytest.approx(bound.angle_deg[0], rel=0.1)
-
-
-def test_a_pixel_that_inverts_before_it_saturates_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"reset_threshold_e.*\b1000\b"):
-        replace(sensor_of(), reset_threshold_e=1_000.0)
-    with pytest.raises(ValueError, match="reset_s must be in"):
-        replace(sensor_of(), reset_s=1.0)

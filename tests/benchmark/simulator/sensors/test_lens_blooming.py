@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -149,9 +146,3 @@ def test_the_statistics_of_the_bound_have_the_variance_they_state() -> None:
     assert strong.sum() >= 4
     assert over.mean(axis=0) == pytest.approx(expected[0, -1, strong], rel=1e-3)
     assert np.mean(over.var(axis=0, ddof=1) / stated) == pytest.approx(1.0, abs=0.1)
-
-
-def test_a_converter_below_the_full_well_is_refused() -> None:
-    camera = sensor_of().camera
-    with pytest.raises(ValueError, match=re.escape(f" {camera.detector.full_well_e:g} ")):
-        BloomingSensor(replace(camera, detector=replace(camera.detector, gain_e_per_dn=100.0)))

@@ -303,26 +303,3 @@ def test_noise_is_shot_read_and_rounding_and_dark_doubles() -> None:
     ]
     assert dark[1] == pytest.approx(2 * dark[0])
     assert dark[0].mean() == pytest.approx(50.0, rel=0.01)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"axes": ()}, "axes must be 'x' or 'y'"),
-        ({"axes": ("z",)}, "axes must be 'x' or 'y'"),
-        ({"pixel_height_mm": 0.0}, "pixel_height_mm must be positive"),
-        ({"fill_factor": 1.2}, r"fill_factor must be in \(0, 1\]"),
-    ],
-)
-def test_wrong_arrays_are_refused(changes: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        sensor_with(slit_row((0.0,), 0.2, 9.0), **changes)
-
-
-def test_arrays_of_several_rows_and_round_holes_are_refused() -> None:
-    sensor = sensor_with(slit_row((0.0,), 0.2, 9.0))
-    with pytest.raises(ValueError, match="one row of pixels; got 3"):
-        replace(sensor, detector=replace(sensor.detector, rows=3))
-    aperture = replace(slit(0.2, 0.2), shape="round")
-    with pytest.raises(ValueError, match="rectangular slits only"):
-        replace(sensor, camera=replace(sensor.camera, mask=Mask((aperture,))))

@@ -246,10 +246,3 @@ def test_blur_costs_information() -> None:
     )
     assert lost_along > lost_across > 0.0
     assert lost_along > 0.2
-
-
-def test_impossible_read_outs_are_refused() -> None:
-    with pytest.raises(ValueError, match="more_nodes must not be negative"):
-        turning(standard(), more_nodes=-1)
-    with pytest.raises(ValueError, match="row_time_s must be finite"):
-        turning(standard(), row_time_s=math.inf)
