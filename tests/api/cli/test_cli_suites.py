@@ -52,6 +52,7 @@ def published(small: Path) -> Store:
     return store
 
 
+@pytest.mark.slow
 def test_a_record_that_holds_is_verified_and_nothing_is_written(
     published: Store, small: Path
 ) -> None:

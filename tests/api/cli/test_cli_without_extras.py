@@ -36,12 +36,9 @@ for arguments in {commands!r}:
     ended.append((code, out.getvalue(), err.getvalue()))
 print(json.dumps(ended))
 """
-ALONE = [
-    ["recommend", "--detector", "CMOS", "--max-error-deg", "0.1"],
-    ["claims", "C29"],
-    ["calibrate", "--help"],
-    ["survey", "check"],
-]
+ALONE = [["claims", "C29"], ["calibrate", "--help"]]
+#: Those that read and check whole tables: seconds each.
+LONG = [["recommend", "--detector", "CMOS", "--max-error-deg", "0.1"], ["survey", "check"]]
 NEEDING = {
     "serve": ["get", "/v1/claims"],
     "cluster": ["verify", "--sample", "1", "--scheduler", "tcp://127.0.0.1:9"],
@@ -49,24 +46,25 @@ NEEDING = {
 }
 
 
-@pytest.fixture(scope="module")
-def ended() -> list[tuple[int, str, str]]:
+def endings(*commands: list[str]) -> list[tuple[int, str, str]]:
     """Exit code and output of each command, and `calibrate` imported before."""
-    code = WITHOUT.format(missing=sorted(EXTRAS), commands=[*ALONE, *NEEDING.values()])
+    code = WITHOUT.format(missing=sorted(EXTRAS), commands=list(commands))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return [tuple(one) for one in json.loads(done.stdout)]
 
 
-@pytest.mark.parametrize("at", range(len(ALONE)), ids=[one[0] for one in ALONE])
-def test_a_command_needs_the_base_alone(ended, at):
-    code, out, err = ended[at]
-    assert (code, bool(out)) == (0, True), err
+def test_commands_work_with_the_base_alone_or_name_the_extra_that_they_need():
+    alone, needing = len(ALONE), endings(*ALONE, *NEEDING.values())
+    for code, out, err in needing[:alone]:
+        assert (code, bool(out)) == (0, True), err
+    for extra, (code, _, err) in zip(NEEDING, needing[alone:], strict=True):
+        assert code == 1
+        assert f"pip install 'sun-sensor-atlas[{extra}]'" in err
+        assert "Traceback" not in err
 
 
-@pytest.mark.parametrize("extra", NEEDING)
-def test_a_command_names_the_extra_that_it_needs(ended, extra):
-    code, _, err = ended[len(ALONE) + list(NEEDING).index(extra)]
-    assert code == 1
-    assert f"pip install 'sun-sensor-atlas[{extra}]'" in err
-    assert "Traceback" not in err
+@pytest.mark.slow
+def test_commands_that_take_long_work_with_the_base_alone():
+    for code, out, err in endings(*LONG):
+        assert (code, bool(out)) == (0, True), err

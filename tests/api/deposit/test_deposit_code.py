@@ -7,6 +7,8 @@ import pytest
 from api.deposit import code_archive
 from api.deposit.code_archive import CodeArchiveError, write_code
 
+pytestmark = pytest.mark.slow
+
 
 def archive(bundle):
     (found,) = (bundle / "code").iterdir()

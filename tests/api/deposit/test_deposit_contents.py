@@ -45,6 +45,7 @@ def agrees(cell, value, kind):
     return cell == text(value, kind)
 
 
+@pytest.mark.slow
 def test_parquet_holds_what_csv_holds(built):
     found = {path.stem for path in (built.directory / "parquet").iterdir()}
     assert found == {resource["name"] for resource in tables(built.directory)}
@@ -58,6 +59,7 @@ def test_parquet_holds_what_csv_holds(built):
                 assert agrees(cells[name], row[name], kind), (resource["name"], name, row)
 
 
+@pytest.mark.slow
 def test_sqlite_holds_what_csv_holds_under_plain_names(built):
     path = built.directory / "sun-sensor-atlas.sqlite"
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as base:
@@ -93,6 +95,7 @@ def test_a_name_that_needs_quotes_is_refused(name):
         sql_name(name)
 
 
+@pytest.mark.slow
 def test_a_cell_of_another_type_does_not_go_out(bundle, tmp_path):
     path = bundle / "survey" / "studies.csv"
     path.write_text(path.read_text("utf-8").replace(",2008,", ",MMVIII,", 1), "utf-8")
@@ -100,6 +103,7 @@ def test_a_cell_of_another_type_does_not_go_out(bundle, tmp_path):
         write_other_forms(bundle, {"resources": described(bundle)}, tmp_path)
 
 
+@pytest.mark.slow
 def test_the_crate_names_every_file_with_its_checksum(built):
     crate = json.loads((built.directory / "ro-crate-metadata.json").read_text("utf-8"))
     graph = {entity["@id"]: entity for entity in crate["@graph"]}
@@ -126,6 +130,7 @@ def test_the_crate_names_every_file_with_its_checksum(built):
                 assert reference["@id"] in graph
 
 
+@pytest.mark.slow
 def test_the_example_of_the_readme_runs_where_it_lies(bundle):
     readme = (bundle / "README.md").read_text("utf-8")
     (example,) = re.findall(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE)

@@ -15,6 +15,7 @@ from benchmark.contract import Cell
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.preset import Preset
 
+pytestmark = pytest.mark.slow
 NAMED = [
     Cell("pd-slit", "nominal", "voltage-balance", "polynomial-1d"),
     Cell("cmos-single-aperture", "nominal", "bcm", "polynomial-2d"),
@@ -66,7 +67,6 @@ def test_a_changed_sample_and_a_changed_digit_are_found(bundle):
     assert of_digit.differing == ["rms_deg"]
 
 
-@pytest.mark.slow
 def test_the_bundle_alone_is_enough(built, tmp_path):
     """In an empty directory and environment: Python, and the registry that pip is configured with.
 

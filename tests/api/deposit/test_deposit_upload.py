@@ -87,8 +87,15 @@ def test_a_published_record_has_a_next_version_without_its_old_files(journey):
     assert journey.is_whole(done.draft.id)
 
 
-@pytest.mark.parametrize("kind", [429, "drop before", "drop after"])
-@pytest.mark.parametrize("step", [*STEPS, "version", "import", "delete", "publish"])
+@pytest.mark.parametrize(
+    ("step", "kind"),
+    [
+        # each step with one kind of failure; slow are the others
+        pytest.param(step, kind, marks=() if (k + n) % 3 == 0 else pytest.mark.slow)
+        for k, step in enumerate((*STEPS, "version", "import", "delete", "publish"))
+        for n, kind in enumerate((429, "drop before", "drop after"))
+    ],
+)
 def test_a_failure_for_the_moment_is_survived(journey, kind, step):
     """Whether or not the request arrived, nothing is done twice."""
     if step in {*STEPS, "publish"}:
