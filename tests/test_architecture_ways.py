@@ -96,6 +96,7 @@ def test_a_frame_passes_the_functions_listed_from_data_set_to_score() -> None:
     assert on_the_way(lambda: measure(task), landmarks) == ways
 
 
+@pytest.mark.slow
 def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
     ways = listed("A query, from HTTP to answer")
     assert len(ways) <= MOST

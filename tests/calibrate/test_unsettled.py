@@ -36,6 +36,8 @@ def test_a_drawing_refuses_mirrored_axes_unless_it_may_mirror(tmp_path):
     with pytest.raises(UnusableDataError, match="no model can be calibrated"):
         calibrate([path], models=("spm",))
     assert calibrate([path], models=("spm",), apply=True).chosen.rms_deg < 2.0
+    with pytest.raises(UnusableDataError, match="no model no-such"):
+        calibrate([path], models=("no-such",))
 
 
 @pytest.mark.parametrize("count", [3, 4, 6])

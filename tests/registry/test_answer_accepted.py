@@ -145,6 +145,7 @@ def test_a_study_is_found_by_its_model_though_nobody_flew_it(published: Measurem
         assert "Hales2002" in {report.key for report in one.reports}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [40, pytest.param(200, marks=pytest.mark.slow)])
 def test_drawn_answers_hide_no_report_and_compare_no_two_data_sets(
     number: int, survey: Facts, published: Measurements

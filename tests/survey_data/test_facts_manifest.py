@@ -77,6 +77,7 @@ def test_a_change_by_hand_is_named_and_taken_over(
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_a_sound_change_by_hand_is_taken_over_and_named(
     tables: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -95,6 +95,7 @@ def test_what_is_no_bibliography_is_refused(copy: Any, text: str) -> None:
         import_bibliography(copy.directory / "bad.bib")
 
 
+@pytest.mark.slow
 def test_a_doi_that_is_another_study_s_is_refused_whole(copy: Any) -> None:
     taken = next(row for row in copy.rows("studies") if row[6].startswith("10."))[6]
     before = copy.path("studies").read_bytes()
@@ -206,6 +207,7 @@ def test_a_bibliography_of_every_key_completes_every_identity_by_one_call(copy: 
             assert after["url"] == said[key]["url"]
 
 
+@pytest.mark.slow
 def test_a_confirmed_identity_is_replaced_only_by_name(copy: Any) -> None:
     text = "@article{Chang2008, title = {Another title altogether}, year = {2007}}\n"
     path = offer(copy, text)

@@ -70,6 +70,7 @@ def test_adding_and_removing_leaves_no_trace(recorded: Path) -> None:
     assert content(recorded) == before
 
 
+@pytest.mark.slow
 def test_without_apply_nothing_is_written(recorded: Path) -> None:
     before = content(recorded)
     addition = read_study(offered(recorded), recorded)

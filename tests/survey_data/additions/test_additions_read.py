@@ -57,7 +57,12 @@ def filled(addition: Addition) -> str:
     return "\n".join(lines) + "\n"
 
 
-@pytest.mark.parametrize("key", survey_data.load().extension_studies["key"])
+KEYS = survey_data.load().extension_studies["key"]
+
+
+@pytest.mark.parametrize(
+    "key", [pytest.param(key, marks=[pytest.mark.slow] * (n % 4 > 0)) for n, key in enumerate(KEYS)]
+)
 def test_a_template_of_a_shipped_study_gives_back_its_rows(copy: Any, key: str) -> None:
     tables = load_texts([f"extension_{table}" for table in TABLES])
     rows = {

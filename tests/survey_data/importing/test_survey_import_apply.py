@@ -139,6 +139,7 @@ def test_an_unreadable_cell_stops_everything(
     assert copy.path("attributes").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_an_import_into_invalid_tables_is_refused(copy: Any) -> None:
     copy.set("studies", 2, "doi", "no doi")
     before = copy.path("attributes").read_bytes()
