@@ -34,6 +34,7 @@ def made(tmp_path_factory):
     return out, shown
 
 
+@pytest.mark.slow
 def test_exports_load_with_plain_numpy_and_pandas(made):
     out, _ = made
     table = pd.read_csv(out / "albedo" / "test.csv")
@@ -45,6 +46,7 @@ def test_exports_load_with_plain_numpy_and_pandas(made):
         np.testing.assert_array_equal(signals, whole.observations[:4])
 
 
+@pytest.mark.slow
 def test_verify_passes_then_names_what_was_changed(made, tmp_path):
     out, _ = made
     shown = sunatlas("verify", out)

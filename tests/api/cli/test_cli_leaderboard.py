@@ -54,6 +54,7 @@ def test_without_options_the_answer_fits_one_screen(rows):
         assert float(bench) == pytest.approx(row["on_bench_deg"], rel=0.005)
 
 
+@pytest.mark.slow
 def test_findings_are_those_of_the_readme_and_come_with_their_pairs():
     readme = (Path(__file__).parents[3] / "README.md").read_text("utf-8")
     said = " ".join(sunatlas("findings").split())

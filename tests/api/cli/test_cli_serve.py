@@ -180,6 +180,7 @@ def test_a_reload_replaces_both_workers_and_every_question_meanwhile_is_answered
         time.sleep(0.1)
 
 
+@pytest.mark.slow
 def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeypatch, tmp_path):
     for name in (*facts_manifest.names(), manifest.FILE):
         (tmp_path / name).parent.mkdir(exist_ok=True)

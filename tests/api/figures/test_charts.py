@@ -74,7 +74,9 @@ def test_no_point_beats_one_of_the_front_and_one_beats_every_other() -> None:
     assert drawn == {(r["architecture"], r["across"], r["error_deg"]) for r in made.rows}
 
 
-@pytest.mark.parametrize("path", PAGES)
+@pytest.mark.parametrize(
+    "path", [pytest.param(path, marks=[pytest.mark.slow] * ("/" not in path[1:])) for path in PAGES]
+)
 def test_every_chart_of_a_page_can_be_had_and_draws_nothing_unknown(
     atlas: Client, path: str
 ) -> None:

@@ -19,7 +19,10 @@ HTML = "text/html,*/*;q=0.8"
 PATHS = [*(f"/figures/{name}" for name in TITLES), "/figures/matrix"]
 
 
-@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=[pytest.mark.slow] * (n % 4 > 0)) for n, path in enumerate(PATHS)],
+)
 def test_a_figure_has_a_page_a_drawing_and_a_table_in_two_formats(atlas: Client, path: str) -> None:
     page = atlas.get(path, accept=HTML)
     assert page.status_code == 200

@@ -45,6 +45,7 @@ def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):
     assert [row["data_hash"] for row in table] == [row["data_hash"] or "" for row in card["data"]]
 
 
+@pytest.mark.slow
 def test_realism_has_a_row_for_every_dataset_and_board_and_card_name_idealisations(atlas):
     rows = atlas.get("/v1/realism").json()["datasets"]
     assert [row["dataset"] for row in rows] == list(datasets.names())

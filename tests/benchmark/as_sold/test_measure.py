@@ -102,6 +102,7 @@ def test_a_narrower_field_narrows_calibration_and_test():
     assert preset.geometry.half_fov_deg == 5.0
 
 
+@pytest.mark.slow
 def test_each_step_of_a_calibration_brings_an_analogue_sensor_nearer_to_the_truth():
     experiment = BuiltAsSold()
     (task,) = experiment.tasks(["C08"])

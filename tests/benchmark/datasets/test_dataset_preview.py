@@ -38,6 +38,7 @@ def test_every_data_set_has_a_picture_with_much_on_it(name):
     assert (apart > 8).mean() < 0.01, "the published picture is not what is drawn"
 
 
+@pytest.mark.slow
 def test_a_spot_is_drawn_where_it_is():
     """The brightest part of a tile is the spot of the sample with the smallest incidence."""
     preset = datasets.get("cmos-single-aperture")

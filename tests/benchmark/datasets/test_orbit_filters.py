@@ -23,7 +23,7 @@ from benchmark.simulator.flight.orbit import DAY_S, YEAR_DAYS
 
 FILTERS = {n: m for n, m in discover_models().items() if getattr(m, "sequential", False)}
 #: One model of the Sun's motion, and one that learns what drifts.
-FEW = {"extended-kalman", "assembly-drift"}
+FEW = {"extended-kalman"}
 CUBE = datasets.get("pd-orbit")
 
 

@@ -64,7 +64,10 @@ def calibrated_cold_tested_hot(dataset: str, extractor: str, model: str) -> floa
     return float(np.sqrt(np.mean(np.degrees(np.arctan2(cross, cosine)) ** 2)))
 
 
-@pytest.mark.parametrize("dataset", REVIEWED)
+@pytest.mark.parametrize(
+    "dataset",
+    [pytest.param(one, marks=[pytest.mark.slow] * one.startswith("c")) for one in REVIEWED],
+)
 def test_a_sensor_that_got_hot_errs_as_a_script_of_its_own_finds(dataset: str) -> None:
     row = leader(dataset)
     found = calibrated_cold_tested_hot(dataset, row["extractor"], row["model"])

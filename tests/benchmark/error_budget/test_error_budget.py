@@ -143,6 +143,7 @@ def test_as_it_is_the_chain_errs_as_the_runner_says(quadrant):
     assert found.errors_deg["as_is"] == pytest.approx(score.rms_deg, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_benches_add_their_own_error_once(quadrant):
     errors = quadrant[0].errors_deg
     added = np.sqrt(errors["bench"] ** 2 - errors["as_is"] ** 2)

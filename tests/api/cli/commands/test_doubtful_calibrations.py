@@ -3,11 +3,13 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
 
 
+@pytest.mark.slow
 def test_a_calibration_that_is_not_good_is_written_and_ends_with_3(tmp_path: Path) -> None:
     draw = np.random.default_rng(1)
     angles_deg = draw.uniform(-30.0, 30.0, (14, 2))  # alpha beside x, which is beta's axis

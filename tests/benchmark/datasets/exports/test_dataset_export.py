@@ -87,6 +87,7 @@ def test_flats_and_darks_are_those_of_the_data_set(made):
                 np.testing.assert_array_equal(arrays[name], array)
 
 
+@pytest.mark.slow
 def test_readings_taken_again_are_exported_beside_those_of_the_calibration(tmp_path):
     """Without them nobody corrects the samples of a flight as they are scored."""
     made = exported("pd-slit", tmp_path / "out", conditions=["flight", "hot", "hot-renewed"])
