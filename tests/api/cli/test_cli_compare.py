@@ -43,18 +43,3 @@ def test_every_mask_at_equal_height_is_shown_by_its_error_in_flight():
     assert "height 0.5 mm, field 120 deg, 9 units" in said
     (partly,) = (row["design"] for row in rows if row["flight_low_deg"] is None)
     assert f"{partly}: in flight without its units below 95 % availability" in said
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (("--height", "1"), "need --equal"),
-        (("--equal", "--architecture", "CCD:Lens"), "takes no architectures"),
-        (("--equal", "--height", "9"), "light would leave the array"),
-        (("--equal", "--field", "180"), "expected a height above 0 mm"),
-    ],
-)
-def test_calls_that_cannot_be_answered_are_refused_in_words(options, said):
-    shown = sunatlas(*options)
-    assert shown.exit_code != 0
-    assert said in f"{shown.stderr} {shown.exception}"

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
-from pathlib import Path
-
 import pytest
 
 from benchmark import datasets
-from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.results.times import MACHINE, TIMES, Times, read_times
+from benchmark.results.times import Times, read_times
 
 
 @pytest.fixture(scope="module")
@@ -40,22 +36,3 @@ def test_times_are_multiples_of_the_loop_of_a_named_machine(published: Times) ->
             assert published.latency_us[place] is None
         else:
             assert published.latency_us[place] == pytest.approx(time.ratio * machine.loop_us, 0.006)
-
-
-@pytest.mark.parametrize(
-    ("lines", "said"),
-    [
-        (["dataset,extractor", "a,b"], r"times\.csv, line 1: expected the columns"),
-        (["a,b,c,1,1", "a,b,c,1,1"], "line 3: .*there twice"),
-        (["a,b,c,0,1"], "above 0"),
-        (["a,b,c,-1,1"], "above 0"),
-        (["a,b,c,nan,1"], "column ratio"),
-    ],
-)
-def test_a_line_that_is_no_time_is_refused(tmp_path: Path, lines: list[str], said: str) -> None:
-    header = (PUBLISHED / TIMES).read_text().splitlines()[0]
-    whole = lines if lines[0].startswith("dataset") else [header, *lines]
-    (tmp_path / TIMES).write_text("\n".join([*whole, ""]))
-    shutil.copy(PUBLISHED / MACHINE, tmp_path)
-    with pytest.raises(StoreError, match=said):
-        read_times(tmp_path)
