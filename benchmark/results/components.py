@@ -23,7 +23,7 @@ from benchmark.results.digests import (
     condition_digests,
     method_digest,
     method_modules,
-    modules_of,
+    modules_of_preset,
     stage_digests,
 )
 from benchmark.results.modules import STAGES, reached
@@ -227,7 +227,7 @@ class Components:
 def current(parts: Parts) -> Components:
     """Return the components as the code is now."""
     methods = (*parts.extractors.values(), *parts.models.values())
-    made_of = {module for preset in parts.presets.values() for module in modules_of(preset)}
+    made_of = {module for preset in parts.presets.values() for module in modules_of_preset(preset)}
     made_of.update(module for method in methods for module in method_modules(method))
     modules = reached(*STAGES.values(), *sorted(made_of))
     return Components(

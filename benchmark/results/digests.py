@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import weakref
 from collections.abc import Iterator, Mapping
 from types import FunctionType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor
@@ -15,6 +16,17 @@ from benchmark.results.modules import FIRST_PARTY, STAGES, modules_digest
 if TYPE_CHECKING:
     from benchmark.datasets.preset import Preset
 
+
+class _Described(NamedTuple):
+    """What follows from a preset alone: its modules, and digests of its parameters by condition."""
+
+    preset: weakref.ref[Preset]
+    modules: tuple[str, ...]
+    parameters: dict[str, str]
+
+
+#: By identity: presets do not change, and every experiment asks for the digests of all of them.
+_DESCRIBED: dict[int, _Described] = {}
 #: Digits of a component's digest: two of a hundred components meet once in 1e15.
 DIGITS = 16
 
@@ -26,8 +38,8 @@ def condition_digests(preset: Preset) -> dict[str, str]:
     """
     from benchmark.datasets.corrected import reference_condition  # noqa: PLC0415 - loads Numba
 
-    code = modules_digest(*modules_of(preset))
-    parameters = {name: digest(preset.parameters(name)) for name in preset.conditions}
+    described = _describe(preset)
+    code, parameters = modules_digest(*described.modules), described.parameters
     return {
         name: short_digest(
             {
@@ -41,6 +53,20 @@ def condition_digests(preset: Preset) -> dict[str, str]:
         )
         for name, own in parameters.items()
     }
+
+
+def modules_of_preset(preset: Preset) -> tuple[str, ...]:
+    """Return `modules_of` a preset, found once."""
+    return _describe(preset).modules
+
+
+def _describe(preset: Preset) -> _Described:
+    known = _DESCRIBED.get(id(preset))
+    if known is None or known.preset() is not preset:
+        parameters = {name: digest(preset.parameters(name)) for name in preset.conditions}
+        known = _Described(weakref.ref(preset), modules_of(preset), parameters)
+        _DESCRIBED[id(preset)] = known
+    return known
 
 
 def series_digest(series: object) -> str:
