@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import dask
+import distributed
 import fake_cluster
 import pytest
 
@@ -17,15 +19,13 @@ from benchmark.running import cluster, runner
 from benchmark.running.cluster import ClusterError
 from benchmark.running.runner import Summary, run
 
+pytestmark = pytest.mark.slow
 PLANNED = 10  # one condition of the first data set, two of the others, two extractors on each
 
 
 @pytest.fixture(scope="module")
 def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Address of a scheduler with two processes of one thread, which write what they do."""
-    import dask
-    import distributed
-
     patient = {"distributed.comm.timeouts.connect": "300s"}
     once = {"distributed.scheduler.allowed-failures": 1}
     workers: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "processes": True}
