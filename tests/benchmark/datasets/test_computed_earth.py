@@ -46,7 +46,10 @@ def test_a_flown_cube_is_left_with_a_small_part_of_the_earths_light() -> None:
     assert np.sqrt(np.mean(left[lit] ** 2)) < 0.08 * np.sqrt(np.mean(earth[lit] ** 2))
 
 
-@pytest.mark.parametrize(("condition", "share"), [("albedo-clouds", 0.4), ("nominal", 1.02)])
+@pytest.mark.parametrize(
+    ("condition", "share"),
+    [("albedo-clouds", 0.4), pytest.param("nominal", 1.02, marks=pytest.mark.slow)],
+)
 def test_faces_away_from_the_sun_tell_of_the_clouds(condition: str, share: float) -> None:
     """Light that is left on a flown cube, over what a uniform Earth leaves."""
     preset: Any = datasets.get("pd-orbit")
@@ -85,6 +88,7 @@ def test_the_spread_of_a_ground_is_found_with_its_length() -> None:
     assert clean.noise_ == pytest.approx(1e-3, rel=0.1)
 
 
+@pytest.mark.slow
 def test_balances_of_flown_quadrants_are_nearly_those_without_an_earth() -> None:
     """Against the same readings, noise and all, under a black Earth."""
     preset: Any = datasets.get("qpd-orbit")

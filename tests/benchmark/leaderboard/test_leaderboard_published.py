@@ -87,7 +87,7 @@ COSTLY = {
     "ccd-periodic", "ccd-single-aperture", "ccd-vernier", "pda-n-slit",
     "cmos-multi-aperture-glass", "cmos-single-aperture-thick", "qpd-orbit",
     "cmos-compound-eye", "cmos-encoded", "cmos-encoded-oblique", "cmos-encoded-sizes",
-    "cmos-l-slit", "cmos-lens",
+    "cmos-l-slit", "cmos-lens", "pd-code-dial",
     "cmos-multi-aperture", "cmos-single-aperture", "cmos-single-aperture-pinhole", "cmos-slit",
     "event-l-slit", "event-single-aperture", "ltf-maskless-cube", "pd-albedo-orbit",
     "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit", "pva-maskless-panels",

@@ -4,6 +4,7 @@ import dataclasses
 import math
 
 import fake_plan
+import pytest
 from fake_atlas import Currents, Diodes, LeastSquares
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -91,6 +92,7 @@ def test_studies_of_another_architecture_do_not_count():
     )
 
 
+@pytest.mark.slow
 def test_nothing_is_scored_twice_nor_outside_the_plan():
     scores, parts = Store(PUBLISHED).scores(), installed_parts()
     first, found, planned = scope.first(parts), scope.followers(scores, parts), cells(parts=parts)

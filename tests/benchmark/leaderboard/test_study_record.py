@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from benchmark.contract import ON_BENCH
 from benchmark.leaderboard import scope, study_record
 from benchmark.plan.parts import every_part, installed_parts, split_parts, study_parts
@@ -38,6 +40,7 @@ def test_neither_record_holds_cells_of_the_other() -> None:
     assert studies.presets == study_parts().presets
 
 
+@pytest.mark.slow
 def test_all_that_is_published_is_the_standard_suite_and_quick_does_without() -> None:
     scores = {**Store(PUBLISHED).scores(), **Store(PUBLISHED_STUDIES).scores()}
     assert set(suite("standard").select(scores, every_part())) == set(scores)

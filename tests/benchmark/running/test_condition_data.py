@@ -100,6 +100,7 @@ def test_they_are_those_that_the_runner_scores(dataset: str, name: str) -> None:
     np.testing.assert_array_equal(ready, found)
 
 
+@pytest.mark.slow
 def test_windows_in_parts_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     preset = datasets.get("cmos-single-aperture")
     extractor = installed_parts().extractor("weighted-spots").for_sensor(preset.geometry)

@@ -27,6 +27,7 @@ def test_every_item_is_done_once_and_an_error_is_raised_here(workers: int) -> No
         list(as_completed(math.sqrt, [1.0, -1.0], workers))
 
 
+@pytest.mark.slow
 def test_a_killed_worker_is_told_by_name_and_others_take_its_place() -> None:
     with pytest.raises(WorkerLostError, match="a worker process was killed"):
         list(as_completed(kill, [1.0, 2.0, 3.0], 2))

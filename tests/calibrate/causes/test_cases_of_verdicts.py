@@ -21,7 +21,7 @@ MAPS = ("spm", "lsq", "polynomial-2d", "lut-polynomial")
 CELLS = ("polynomial-signals", "assembled-faces")
 
 
-@pytest.mark.parametrize("late", [0, 2])
+@pytest.mark.parametrize("late", [2, pytest.param(0, marks=pytest.mark.slow)])
 def test_sentinels_are_named_and_rows_that_are_late_are_found_once(late, tmp_path):
     lines = (CASES / "sentinel-999.csv").read_text().split()
     cells = np.array([line.split(",") for line in lines[1:]])
@@ -42,6 +42,7 @@ def test_sentinels_are_named_and_rows_that_are_late_are_found_once(late, tmp_pat
     assert again.settings == found.settings
 
 
+@pytest.mark.slow
 def test_quadrants_that_fall_from_five_volts_are_good_only_with_dark_and_inversion():
     path = CASES / "quadrants-inverted-5V.csv"
     as_stated = calibrate([path], models=MAPS)
@@ -63,7 +64,7 @@ def test_quadrants_that_fall_from_five_volts_are_good_only_with_dark_and_inversi
     assert again.applied == ()
 
 
-@pytest.mark.parametrize("config", [False, True])
+@pytest.mark.parametrize("config", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_plain_cells_are_channels_that_are_neither_inverted_nor_mirrored(config):
     settings = read_settings(CASES / "four-tilted-photodiodes.toml") if config else None
     path = CASES / "four-tilted-photodiodes.csv"
