@@ -98,6 +98,7 @@ def test_attitude_and_date_give_the_suns_direction(date: str) -> None:
     assert readings_of(made, found.settings).sun == pytest.approx(seen, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_almanac_is_that_of_astropy_to_some_thousandths_of_a_degree() -> None:
     time = pytest.importorskip("astropy.time")
     coordinates = pytest.importorskip("astropy.coordinates")

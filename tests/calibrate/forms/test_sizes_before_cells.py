@@ -157,6 +157,7 @@ def test_names_of_runs_are_read_however_often_they_stand(kept: bool, tmp_path: P
     assert found.columns["run"][-2:].tolist() == ["cold", "hot"]
 
 
+@pytest.mark.slow
 def test_lists_of_many_numbers_in_a_few_cells_are_refused_by_their_count(tmp_path: Path) -> None:
     path = tmp_path / "a.parquet"
     pq.write_table(pa.table({"x_px": [[0.0] * 2_100_000] * 30}), path)
