@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,6 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 from benchmark import datasets
 from benchmark.simulator.light.sun_disc import from_angles
+from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.blooming import BloomingSensor, spill
 
@@ -146,3 +149,19 @@ def test_the_statistics_of_the_bound_have_the_variance_they_state() -> None:
     assert strong.sum() >= 4
     assert over.mean(axis=0) == pytest.approx(expected[0, -1, strong], rel=1e-3)
     assert np.mean(over.var(axis=0, ddof=1) / stated) == pytest.approx(1.0, abs=0.1)
+
+
+def test_every_pixel_has_read_noise_of_its_own() -> None:
+    """A mean over 64 rows is 8 times as steady as one pixel."""
+    sensor = sensor_of()
+    detector = sensor.camera.detector
+    loud = replace(detector, read_noise_e=3.0 * detector.gain_e_per_dn)
+    sensor = replace(sensor, camera=replace(sensor.camera, detector=loud))
+    pattern, scene = sensor.fixed_pattern("one"), scene_of([(15.0, 15.0)])
+    one, other = (
+        sensor.observe(scene, pattern, NoiseStreams.named("noise", n))[0, :64, :64].astype(float)
+        for n in range(2)
+    )
+    noise = one - other
+    assert np.std(noise) > 3.0
+    assert 8.0 * np.std(noise.mean(axis=0)) == pytest.approx(np.std(noise), rel=0.3)
