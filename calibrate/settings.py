@@ -8,7 +8,16 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    Strict,
+    StrictBool,
+    ValidationError,
+    model_validator,
+)
 
 from algorithms.contract import SensorGeometry
 from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
@@ -32,13 +41,16 @@ COLUMNS: dict[str, int | None] = {
 }
 #: Columns of the direction that each form has.
 DIRECTION_COLUMNS: dict[str, int] = {"vector": 3, "one-angle": 1, "quaternion": 4, "matrix": 9}
+#: A number that is written as one: no text, and no true or false, which Python counts as 1 and 0.
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Count = Annotated[int, Strict()]
 #: Largest size of a number of a reading, of a length in mm, and of a pixel's place.
 _LARGEST, _LONGEST_MM, _FARTHEST_PX = 1e15, 1e4, 1e6
-Reading = Annotated[float, Field(ge=-_LARGEST, le=_LARGEST, allow_inf_nan=False)]
-Length = Annotated[float, Field(gt=0, le=_LONGEST_MM, allow_inf_nan=False)]
-Place = Annotated[float, Field(ge=-_FARTHEST_PX, le=_FARTHEST_PX, allow_inf_nan=False)]
-Index = Annotated[float, Field(ge=1.0, le=5.0, allow_inf_nan=False)]
-Component = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Reading = Annotated[Number, Field(ge=-_LARGEST, le=_LARGEST)]
+Length = Annotated[Number, Field(gt=0, le=_LONGEST_MM)]
+Place = Annotated[Number, Field(ge=-_FARTHEST_PX, le=_FARTHEST_PX)]
+Index = Annotated[Number, Field(ge=1.0, le=5.0)]
+Component = Annotated[Number, Field(ge=-1e6, le=1e6)]
 #: Rows that readings may be late.
 MOST_SHIFTED = 10_000
 #: What a certificate says of what nobody stated, and of such a country.
@@ -52,23 +64,18 @@ class SettingsError(ValueError):
     """Settings that are not valid: what was expected and what came, one line a fault."""
 
 
+def _no_number(stated: object) -> object:
+    """Refuse a number for a date, which Pydantic would take for seconds since 1970."""
+    if isinstance(stated, (int, float)):
+        raise ValueError("expected a date, as 2026-11-26")  # noqa: TRY004 - Pydantic's
+    return stated
+
+
+Day = Annotated[dt.date, BeforeValidator(_no_number)]
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _no_truth_for_numbers(cls, stated: Any) -> Any:
-        """Refuse true and false where a number is expected: Python counts them as 1 and 0."""
-        if isinstance(stated, dict):
-            for name, value in stated.items():
-                field = cls.model_fields.get(name)
-                if field is None or field.annotation is bool:
-                    continue
-                if isinstance(value, bool) or (
-                    isinstance(value, (list, tuple)) and any(isinstance(v, bool) for v in value)
-                ):
-                    raise ValueError(f"{name} must be no true or false")
-        return stated
 
 
 class FileSettings(_Strict):
@@ -81,7 +88,7 @@ class FileSettings(_Strict):
         default=None, description="Between cells; a blank stands for any number of blanks."
     )
     decimal: Literal[".", ","] | None = Field(default=None, description="Sign of decimals.")
-    header_row: Annotated[int, Field(ge=0, le=10_000)] | None = Field(
+    header_row: Annotated[Count, Field(ge=0, le=10_000)] | None = Field(
         default=None, description="Row of the names, the first row is 1; 0 where there is none."
     )
     sheet: Annotated[str, Field(max_length=100)] | None = Field(
@@ -105,7 +112,7 @@ class ReadingsSettings(_Strict):
     gain: Reading | tuple[Reading, ...] = Field(
         default=1.0, description="Reading per unit of signal, divided out; positive."
     )
-    inverted: bool = Field(
+    inverted: StrictBool = Field(
         default=False,
         description="True where readings fall when light rises, or balances point back.",
     )
@@ -154,7 +161,7 @@ class DirectionSettings(_Strict):
     unit: AngleUnit | tuple[AngleUnit, ...] = Field(
         default="deg", description="Of the angles: deg, rad, mrad, arcmin, arcsec or gon."
     )
-    from_light: bool = Field(
+    from_light: StrictBool = Field(
         default=False, description="True where vectors point from the light to the sensor."
     )
     scalar: Literal["first", "last"] = Field(
@@ -211,7 +218,7 @@ class RowSettings(_Strict):
     temperature_unit: TemperatureUnit = Field(
         default="K", description="Of that column: K, degC or degF."
     )
-    shift: Annotated[int, Field(ge=-MOST_SHIFTED, le=MOST_SHIFTED)] = Field(
+    shift: Annotated[Count, Field(ge=-MOST_SHIFTED, le=MOST_SHIFTED)] = Field(
         default=0, description="Rows by which the readings come after their poses."
     )
 
@@ -219,11 +226,10 @@ class RowSettings(_Strict):
 class BenchSettings(_Strict):
     """What is known of the bench."""
 
-    floor_deg: float = Field(
+    floor_deg: Number = Field(
         default=0.0,
         ge=0.0,
         le=30.0,
-        allow_inf_nan=False,
         description="RMS error of the directions themselves.",
     )
 
@@ -236,7 +242,7 @@ class SensorSettings(_Strict):
     centre_px: tuple[Place, Place] | None = None
     aperture_width_mm: Length | None = None
     aperture_shape: Literal["round", "square"] | None = None
-    half_fov_deg: Annotated[float, Field(gt=0, le=180, allow_inf_nan=False)] | None = None
+    half_fov_deg: Annotated[Number, Field(gt=0, le=180)] | None = None
     face_normals: tuple[tuple[Component, Component, Component], ...] | None = None
     cover_glass: tuple[tuple[Length, Index], ...] | None = None
     mask_thickness_mm: Length | None = None
@@ -271,10 +277,10 @@ class CertificateSettings(_Strict):
     identifier: str | None = Field(
         default=None, description="Number of the certificate; by default the data's digest."
     )
-    begin: dt.date | None = Field(
+    begin: Day | None = Field(
         default=None, description="First day of the measurement, as 2026-11-26; by default today."
     )
-    end: dt.date | None = Field(default=None, description="Last day.")
+    end: Day | None = Field(default=None, description="Last day.")
 
 
 class Settings(_Strict):

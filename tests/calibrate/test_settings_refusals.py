@@ -41,7 +41,11 @@ NAN, INF = float("nan"), float("inf")
     [
         ("readings.dark", 1e308, "less than or equal to 1000000000000000 .*; got 1e\\+308"),
         ("readings.dark", [0.0, NAN], "a finite number; got nan"),
-        ("readings.gain", True, "gain must be no true or false"),
+        ("readings.gain", True, "a valid number .*; got True"),
+        ("readings.gain", [1.0, "1.5"], "a valid number; got '1.5'"),
+        ("readings.inverted", 1, "a valid boolean; got 1"),
+        ("rows.shift", "3", "a valid integer; got '3'"),
+        ("certificate.begin", 0, "expected a date, as 2026-11-26; got 0"),
         ("rows.shift", 10_001, "less than or equal to 10000; got 10001"),
         ("bench.floor_deg", INF, "a finite number; got inf"),
         ("sensor.centre_px", [NAN, 0.0], "a finite number; got nan"),
