@@ -22,7 +22,7 @@ from pydantic import (
 )
 
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
-from survey_data.importing.bibliography import TURNING
+from survey_data.importing.bibliography import FORBIDDEN
 from survey_data.importing.writing import offered_text
 from survey_data.json_data import JsonData
 from survey_data.nearest import one_of
@@ -36,10 +36,7 @@ Place: TypeAlias = tuple[str | int, ...]
 """Keys and positions that lead to a value, such as ``("model", 0, "basis")``."""
 
 _MOST_BYTES = 1_000_000
-_LONGEST = 5000
-_CONTROL = re.compile(
-    rf"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ud800-\udfff\ufffd{TURNING}]"
-)
+_LONGEST, _LARGEST = 5000, 1e15
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:\s*)", re.IGNORECASE)
 #: Note of a role whose file says nothing of why; the table of roles has one in every row.
 _NO_REASON = "No reason stated."
@@ -125,18 +122,24 @@ def _lines(text: str) -> dict[Place, int]:
 
 
 def _text(value: object) -> str:
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
-        message = f"expected a text, got {json.dumps(value, default=str)}"
+    if not isinstance(value, str):
+        message = f"expected a text, got {json.dumps(value, default=str):.60}"
         raise ValueError(message)  # noqa: TRY004 - pydantic's
-    said = repr(value) if isinstance(value, float) else str(value)
-    if found := _CONTROL.search(said):
+    if found := FORBIDDEN.search(value):
         raise ValueError(f"holds the character U+{ord(found[0]):04X}")
-    if len(said) > _LONGEST:
+    if len(value) > _LONGEST:
         raise ValueError(f"longer than {_LONGEST} characters")
-    return " ".join(said.split())
+    return " ".join(value.split())
+
+
+def _text_or_number(value: object) -> str:
+    if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST:
+        return repr(value)
+    return _text(value)
 
 
 Text: TypeAlias = Annotated[str, BeforeValidator(_text)]
+TextOrNumber: TypeAlias = Annotated[str, BeforeValidator(_text_or_number)]
 
 
 class Evidence(BaseModel):
@@ -152,7 +155,7 @@ class Evidence(BaseModel):
 class Value(Evidence):
     """A value of an attribute, what the study calls it, and the role of a method."""
 
-    value: Text = ""
+    value: TextOrNumber = ""
     name: Text = ""
     nearest: StrictBool = False
     role: Text = ""
@@ -183,7 +186,7 @@ class OfferedStudy(BaseModel):
     key: Text = ""
     title: Text = ""
     authors: Text = ""
-    year: Text = ""
+    year: TextOrNumber = ""
     venue: Text = ""
     type: Text = ""
     doi: Text = ""

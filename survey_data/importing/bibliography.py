@@ -36,8 +36,11 @@ SUFFIXES = (".bib", ".ris")
 _MOST_BYTES = 2_000_000  # thousands of entries; TeX takes half a minute for a million letters
 _LONGEST_FIELD = 20_000
 _MOST_ENTRIES = 10_000
-#: Letters that turn the direction of reading: what follows is not what it looks like.
-TURNING = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+#: What no text holds: what a terminal obeys, ends of lines and pages, lost letters, and what turns
+#: the direction of reading, so that the rest is not what it looks like.
+FORBIDDEN = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffd]"
+)
 #: Fields that name where a work is published, first of these that is there.
 _VENUES = (
     *("journal", "journaltitle", "booktitle", "series", "school", "institution"),
@@ -106,12 +109,9 @@ def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
     if len(entries) > _MOST_ENTRIES:
         raise SurveyImportError(f"{where.name} has more than {_MOST_ENTRIES} entries")
     for entry in entries:
-        said = f"{entry.key}{entry.title}{entry.authors}{entry.venue}"
-        if turned := re.search(f"[{TURNING}]", said):
-            raise SurveyImportError(
-                f"{where.name}, line {entry.line}: {entry.key!a} holds the character "
-                f"U+{ord(turned[0]):04X}, which turns the direction of reading"
-            )
+        if found := FORBIDDEN.search("".join(entry.columns().values())):
+            message = f"{entry.key!a} holds the character U+{ord(found[0]):04X}"
+            raise SurveyImportError(f"{where.name}, line {entry.line}: {message}")
     return entries
 
 

@@ -259,6 +259,8 @@ def test_an_entry_of_another_year_than_its_key_is_taken_and_the_year_shown(copy:
         ("@string{a = a # a}\n" * 1000, "a is longer than 20000"),
         ("@misc{a,}\n" * 100_000, r"refs\.bib has more than 10000 entries"),
         ("@misc{a, title={A \u202e B}}", r"'a' holds the character U\+202E"),
+        ("@misc{a, title={A \x9b31m B}}", r"'a' holds the character U\+009B"),
+        ("@misc{a, title={A}, doi={10.1234/\x9b31m}}", r"'a' holds the character U\+009B"),
         ('@string{a="%s"}' % ("x" * 9000) + "@string{b=a#a#a}", "b is longer than 20000"),
     ],
 )

@@ -99,6 +99,7 @@ def test_a_study_of_the_survey_cannot_be_removed_or_added_again(recorded: Path) 
         ('"CMOS"', '"APS"', '"APS"', r"'APS' of detector: .*did you mean CMOS\?"),
         ('"title"', '"titel"', '"titel"', r"basis: 'titel': .*did you mean title\?"),
         ("0.005", "500", "500", r"accuracy_deg: .*\b1e-06\b.*\b180\b.*\b500\b"),
+        ('venue = "Journal', 'venue = nan # "', "venue =", "expected a text"),
         ("venue =", "venu =", "venu =", r"key 'venu': .*\bvenue\?"),
         ('basis = "title"', 'base = "title"', "base =", r"unknown key 'base': .*mean basis\?"),
         ('name = "graph network"', "", "nearest = true", "nearest: needs a name"),
