@@ -18,7 +18,7 @@ from files.csv_writing import csv_text
 #: Of a prefix: parts of unreserved characters (RFC 3986), which need no escaping anywhere.
 PREFIX = re.compile(r"(?:/[A-Za-z0-9_~-][A-Za-z0-9._~-]*)+")
 #: Where it stands in the scope; Starlette has it in `request.base_url`.
-_KEY = "app_root_path"
+KEY = "app_root_path"
 #: Members of JSON and columns of CSV whose values are addresses. Other texts may start with "/".
 _NAMED = (
     *("address", "board", "csv", "flow", "href", "instance"),
@@ -50,7 +50,7 @@ class ForwardedPrefix(ProxyHeadersMiddleware):
                 "path": scope["path"].removeprefix(own),
                 "raw_path": scope["raw_path"].removeprefix(own.encode()),
                 "root_path": "",
-                _KEY: said if trusted else own,
+                KEY: said if trusted else own,
             }
         await super().__call__(scope, receive, send)  # type: ignore[arg-type]
 
@@ -67,7 +67,7 @@ class UnderPrefix:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a connection on, changing what comes back where there is a prefix."""
-        prefix = scope.get(_KEY)
+        prefix = scope.get(KEY)
         if scope["type"] != "http" or not prefix:
             await self.app(scope, receive, send)
             return
