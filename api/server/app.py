@@ -18,7 +18,6 @@ from api.http import about, calibrations, files, metadata, tables
 from api.http.openapi import describe
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
-from api.server.connections import FewAtOnce
 from api.server.kept import KeptAnswers
 from api.server.prefix import UnderPrefix
 from api.service.knowledge import Knowledge
@@ -77,7 +76,6 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
         GZipMiddleware, minimum_size=512, compresslevel=6, exclude_content_types=packed
     )
     app.add_middleware(KeptAnswers)
-    app.add_middleware(FewAtOnce)
     app.add_middleware(EveryResponse)
 
     def openapi() -> dict[str, Any]:

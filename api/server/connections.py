@@ -1,14 +1,17 @@
-"""What one client may take of a server: connections, requests at once, and time to ask.
+"""What one client may take of a server: connections, requests, and time to ask.
 
 A proxy in front knows clients better (deploy/Caddyfile); this is for servers without one.
 """
 
 from __future__ import annotations
 
+import asyncio
 from asyncio import Transport
 from collections import Counter
+from collections.abc import Callable, Container
+from functools import partial
 from http import HTTPStatus
-from typing import Any
+from typing import Any, ClassVar
 
 import h11
 from starlette.responses import PlainTextResponse
@@ -17,10 +20,19 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 #: Of one address, in a process of the server.
 MOST_CONNECTIONS, MOST_REQUESTS = 100, 100
+#: Requests of one address a second, after the first so many, as of some pages with their parts:
+#: what is asked faster waits for its turn.
+MOST_PER_S, AT_ONCE = 20.0, 100
+#: Who is refused hears so after a while, and cannot come again at once; so many wait at most.
+REFUSED_AFTER_S, MOST_REFUSED = 1.0, 1000
+#: Addresses remembered, beyond which those are forgotten that have not asked for a while.
+MOST_KNOWN = 1000
 #: Within which a head has to arrive, and part of an answer to be taken.
 PATIENCE_S = 10.0
 #: Within which who has just connected may still ask a server that ends.
 _LAST_S = 0.5
+#: How long a client may send on that has its answer.
+_LINGER_S = 30.0
 _NO_LENGTH = "Expected a body with Content-Length; got Transfer-Encoding."
 _TOO_MANY = "Too many connections or requests of this address at once.\n"
 
@@ -48,10 +60,13 @@ class BoundedProtocol(H11Protocol):
     default 127.0.0.1 (`FORWARDED_ALLOW_IPS`).
     """
 
+    _refused: ClassVar[set[BoundedProtocol]] = set()
+
     def __init__(self, *args: Any, **named: Any) -> None:
         super().__init__(*args, **named)
         self.conn = self._bounded = _Connection(h11.SERVER)
         self._seen: tuple[Any, int] = (None, 0)
+        self._is_over = False
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Take a connection, or close it where the address has too many."""
@@ -61,13 +76,16 @@ class BoundedProtocol(H11Protocol):
         clients = [getattr(one, "client", None) or ("", 0) for one in self.connections]
         count = sum(client[0] == host for client in clients)
         if count > MOST_CONNECTIONS and host not in proxies:
-            head = f"HTTP/1.1 429 Too Many Requests\r\nContent-Length: {len(_TOO_MANY)}\r\n"
-            transport.write(f"{head}Connection: close\r\n\r\n{_TOO_MANY}".encode())
-            transport.close()
             # It counts no more among those beyond which Uvicorn answers 503, to others too.
             self.connections.discard(self)
+            self._refuse(self._say_too_many)
         else:
             self.loop.call_later(PATIENCE_S, self._look)
+
+    def _say_too_many(self) -> None:
+        head = f"HTTP/1.1 429 Too Many Requests\r\nContent-Length: {len(_TOO_MANY)}\r\n"
+        self.transport.write(f"{head}Connection: close\r\n\r\n{_TOO_MANY}".encode())
+        self.transport.close()
 
     def shutdown(self) -> None:
         """End with the server; a first question may be on its way, which a reset would answer."""
@@ -76,9 +94,42 @@ class BoundedProtocol(H11Protocol):
         else:
             super().shutdown()
 
+    def data_received(self, data: bytes) -> None:
+        """Take what comes; nothing more of a request that is answered, such as a refused one."""
+        if not self._is_over:
+            super().data_received(data)
+
+    def on_response_complete(self) -> None:
+        """Go on with the next request, or end where the client is still sending this one.
+
+        It may send on for a while, unheard: were it cut off, it might never read the answer.
+        """
+        if self.conn.their_state is not h11.SEND_BODY:
+            super().on_response_complete()
+        elif not self.transport.is_closing():
+            self._is_over = True
+            self.transport.write_eof()
+            self.loop.call_later(_LINGER_S, self.transport.abort)
+
     def send_400_response(self, msg: str) -> None:
         """Refuse what is no request, or one whose length is not stated."""
-        super().send_400_response(_NO_LENGTH if self._bounded.unmeasured else msg)
+        said = _NO_LENGTH if self._bounded.unmeasured else msg
+        self._refuse(partial(super().send_400_response, said))
+
+    def _refuse(self, say: Callable[[], object]) -> None:
+        """Say no, after a while, and read nothing of this connection meanwhile."""
+        if len(self._refused) >= MOST_REFUSED:
+            self.transport.abort()
+            return
+
+        def late() -> None:
+            self._refused.discard(self)
+            if not self.transport.is_closing():
+                say()
+
+        self._refused.add(self)
+        self.transport.pause_reading()
+        self.loop.call_later(REFUSED_AFTER_S, late)
 
     def _look(self) -> None:
         """Close a connection on which nothing is asked, or nothing of an answer taken."""
@@ -93,14 +144,23 @@ class BoundedProtocol(H11Protocol):
 
 
 class FewAtOnce:
-    """ASGI middleware: of one client so many requests at once, beyond which 429 is answered."""
+    """ASGI middleware: what one client may ask at once, beyond which 429 is answered, and a second.
 
-    def __init__(self, app: ASGIApp) -> None:
+    Parameters
+    ----------
+    app : the service
+    proxies : addresses that ask for many clients
+    """
+
+    def __init__(self, app: ASGIApp, proxies: Container[str] = ()) -> None:
         self.app = app
+        self.proxies = proxies
         self._counts = Counter[str]()
+        #: When what each has asked would be through, were it answered evenly; of the loop's clock.
+        self._through: dict[str, float] = {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on, or refuse it."""
+        """Pass a request on in its turn, or refuse it."""
         client = (scope.get("client") or ("",))[0]
         if scope["type"] == "http" and self._counts[client] >= MOST_REQUESTS:
             again = {"Retry-After": "5"}
@@ -109,8 +169,21 @@ class FewAtOnce:
             return
         self._counts[client] += 1
         try:
+            if client not in self.proxies:
+                await self._turn(client)
             await self.app(scope, receive, send)
         finally:
             self._counts[client] -= 1
             if not self._counts[client]:
                 del self._counts[client]
+
+    async def _turn(self, client: str) -> None:
+        """Wait where a client asks too often."""
+        now = asyncio.get_running_loop().time()
+        rested = now - AT_ONCE / MOST_PER_S
+        if len(self._through) > MOST_KNOWN:
+            self._through = {name: at for name, at in self._through.items() if at > rested}
+        through = max(self._through.get(client, 0.0), rested) + 1 / MOST_PER_S
+        self._through[client] = through
+        if through > now:
+            await asyncio.sleep(through - now)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from api.server.app import create_app
+from api.server.connections import FewAtOnce
 from api.server.prefix import ForwardedPrefix
 from api.service.knowledge import Knowledge
 from benchmark.processes import end_in_time, take_time_to_end, work_for
@@ -22,7 +23,10 @@ def application(*, loaded: bool = False) -> ForwardedPrefix:
     if loaded:
         known.load_all()
     trusted = os.environ.get("FORWARDED_ALLOW_IPS", "127.0.0.1,::1")
-    return ForwardedPrefix(create_app(known), trusted)  # type: ignore[arg-type]
+    bounded = FewAtOnce(create_app(known))
+    made = ForwardedPrefix(bounded, trusted)  # type: ignore[arg-type]
+    bounded.proxies = made.trusted_hosts  # type: ignore[assignment]
+    return made
 
 
 def application_of_worker() -> ForwardedPrefix:

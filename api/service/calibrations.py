@@ -31,6 +31,8 @@ from calibrate.uploaded import (
 SHARED = "SUNATLAS_SHARED"
 #: Calibrations that wait at most in a process of the server, and seconds that each usually takes.
 MOST_WAITING, _USUAL_S = 8, 10
+#: Forms that arrive at once in a process: each takes a megabyte; the rest of it is on disk.
+MOST_ARRIVING = 200
 _Answer = TypeVar("_Answer")
 
 
@@ -77,9 +79,7 @@ class _Queue:
 
     def require_place(self) -> None:
         if self.length > MOST_WAITING:
-            wait_s = _USUAL_S * self.length
-            detail = f"{self.length} calibrations run or wait here; try again in {wait_s} s."
-            raise Problem(503, "busy", detail, headers={"Retry-After": str(wait_s)})
+            raise _busy(f"{self.length} calibrations run or wait", _USUAL_S * self.length)
 
     async def answer(self, work: Callable[[Caller], _Answer]) -> _Answer:
         """Return what `work` gives in its turn; a `Problem` (422, 503) where it refuses.
@@ -104,9 +104,16 @@ class _Queue:
 _CALIBRATIONS, _PREVIEWS = _Queue(), _Queue()
 
 
-def require_place() -> None:
-    """Raise a `Problem` (503) where so many calibrations wait that no other is taken."""
+def require_place(arriving: int = 0) -> None:
+    """Raise a `Problem` (503) where so many calibrations wait, or arrive, that none is taken."""
+    if arriving > MOST_ARRIVING:
+        raise _busy(f"{arriving} forms arrive", _USUAL_S)
     _CALIBRATIONS.require_place()
+
+
+def _busy(said: str, wait_s: int) -> Problem:
+    detail, headers = f"{said} here; try again in {wait_s} s.", {"Retry-After": str(wait_s)}
+    return Problem(503, "busy", detail, headers=headers)
 
 
 def read(fields: Mapping[str, str], files: Sequence[Upload]) -> CalibrationFields:

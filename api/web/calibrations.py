@@ -26,6 +26,9 @@ _TURN_S = 0.05
 _REST_S = 1.0
 
 
+_arriving = 0
+
+
 async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
     """Return the fields and the files of a form; fields for files that were left empty are none.
 
@@ -34,7 +37,10 @@ async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
     Problem
         As `api.web.requests.StrictRequest.form`; 503 where too many calibrations wait already.
     """
+    global _arriving  # noqa: PLW0603 - of the process
+    _arriving += 1
     try:
+        require_place(_arriving)
         form = await request.form()
         try:
             fields = {name: part for name, part in form.multi_items() if isinstance(part, str)}
@@ -43,6 +49,7 @@ async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
         finally:
             await form.close()
     finally:
+        _arriving -= 1
         _release_soon()
     return fields, tuple(file for file in files if file.name or file.data)
 

@@ -28,7 +28,7 @@ _OPTIONS: dict[str, Any] = {
     "ws": "none",
     "proxy_headers": False,  # the application reads them (api/server/prefix.py)
     "http": "api.server.connections:BoundedProtocol",
-    "limit_concurrency": 400,
+    "limit_concurrency": 1000,
     "timeout_graceful_shutdown": 5,
 }
 #: Uvicorn's own, which says nothing of starts and stops.
