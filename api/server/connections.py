@@ -20,8 +20,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 #: Of one address, in a process of the server.
 MOST_CONNECTIONS, MOST_REQUESTS = 100, 100
-#: Requests of one address a second, after the first so many, as of some pages with their parts:
-#: what is asked faster waits for its turn.
+#: Requests, and connections, of one address a second, after the first so many, as of some pages
+#: with their parts: what comes faster waits for its turn.
 MOST_PER_S, AT_ONCE = 20.0, 100
 #: Who is refused hears so after a while, and cannot come again at once; so many wait at most.
 REFUSED_AFTER_S, MOST_REFUSED = 1.0, 1000
@@ -33,6 +33,8 @@ PATIENCE_S = 10.0
 _LAST_S = 0.5
 #: How long a client may send on that has its answer.
 _LINGER_S = 30.0
+#: Bytes that are read at once: asyncio's own 256 KiB cost a millisecond to parse.
+_READ = 2**16
 _NO_LENGTH = "Expected a body with Content-Length; got Transfer-Encoding."
 _TOO_MANY = "Too many connections or requests of this address at once.\n"
 
@@ -53,6 +55,23 @@ class _Connection(h11.Connection):
         return event
 
 
+class _Turns:
+    """When those who come too often have their turns, by address."""
+
+    def __init__(self) -> None:
+        #: When what each has asked would be through, were it answered evenly; of the loop's clock.
+        self._through: dict[str, float] = {}
+
+    def wait_s(self, host: str, now: float) -> float:
+        """Return how long one more of this address waits."""
+        rested = now - AT_ONCE / MOST_PER_S
+        if len(self._through) > MOST_KNOWN:
+            self._through = {name: at for name, at in self._through.items() if at > rested}
+        through = max(self._through.get(host, rested), rested) + 1 / MOST_PER_S
+        self._through[host] = through
+        return max(0.0, through - now)
+
+
 class BoundedProtocol(H11Protocol):
     """HTTP as Uvicorn speaks it, to clients that ask in time and keep few connections.
 
@@ -61,6 +80,7 @@ class BoundedProtocol(H11Protocol):
     """
 
     _refused: ClassVar[set[BoundedProtocol]] = set()
+    _turns: ClassVar = _Turns()
 
     def __init__(self, *args: Any, **named: Any) -> None:
         super().__init__(*args, **named)
@@ -69,8 +89,9 @@ class BoundedProtocol(H11Protocol):
         self._is_over = False
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Take a connection, or close it where the address has too many."""
+        """Take a connection in its turn, or refuse it where the address has too many."""
         super().connection_made(transport)
+        transport.max_size = _READ  # type: ignore[attr-defined]  # of asyncio's
         host = self.client[0] if self.client else ""
         proxies = getattr(self.app, "trusted_hosts", ())  # of the middleware that trusts them
         clients = [getattr(one, "client", None) or ("", 0) for one in self.connections]
@@ -79,8 +100,16 @@ class BoundedProtocol(H11Protocol):
             # It counts no more among those beyond which Uvicorn answers 503, to others too.
             self.connections.discard(self)
             self._refuse(self._say_too_many)
-        else:
-            self.loop.call_later(PATIENCE_S, self._look)
+            return
+        wait_s = 0.0 if host in proxies else self._turns.wait_s(host, self.loop.time())
+        if wait_s:
+            transport.pause_reading()
+            self.loop.call_later(wait_s, self._begin)
+        self.loop.call_later(wait_s + PATIENCE_S, self._look)
+
+    def _begin(self) -> None:
+        if not self.transport.is_closing():
+            self.transport.resume_reading()
 
     def _say_too_many(self) -> None:
         head = f"HTTP/1.1 429 Too Many Requests\r\nContent-Length: {len(_TOO_MANY)}\r\n"
@@ -156,8 +185,7 @@ class FewAtOnce:
         self.app = app
         self.proxies = proxies
         self._counts = Counter[str]()
-        #: When what each has asked would be through, were it answered evenly; of the loop's clock.
-        self._through: dict[str, float] = {}
+        self._turns = _Turns()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on in its turn, or refuse it."""
@@ -170,20 +198,11 @@ class FewAtOnce:
         self._counts[client] += 1
         try:
             if client not in self.proxies:
-                await self._turn(client)
+                now = asyncio.get_running_loop().time()
+                if wait_s := self._turns.wait_s(client, now):
+                    await asyncio.sleep(wait_s)
             await self.app(scope, receive, send)
         finally:
             self._counts[client] -= 1
             if not self._counts[client]:
                 del self._counts[client]
-
-    async def _turn(self, client: str) -> None:
-        """Wait where a client asks too often."""
-        now = asyncio.get_running_loop().time()
-        rested = now - AT_ONCE / MOST_PER_S
-        if len(self._through) > MOST_KNOWN:
-            self._through = {name: at for name, at in self._through.items() if at > rested}
-        through = max(self._through.get(client, 0.0), rested) + 1 / MOST_PER_S
-        self._through[client] = through
-        if through > now:
-            await asyncio.sleep(through - now)

@@ -46,11 +46,12 @@ def test_a_connection_that_is_refused_takes_no_place_of_others(atlas, monkeypatc
     """Hundreds at once filled the places of all until they were closed: others heard 503."""
     monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
     monkeypatch.setattr(BoundedProtocol, "_refused", set())
+    monkeypatch.setattr(BoundedProtocol, "_turns", connections._Turns())
     state, config = ServerState(), uvicorn.Config(atlas.app)
     known = {"sockname": ("127.0.0.1", 80), "peername": ("127.0.0.2", 1)}
     plugs = [Mock(get_extra_info=known.get) for _ in range(5)]
     for plug in plugs:
-        protocol = BoundedProtocol(config, state, {}, Mock())
+        protocol = BoundedProtocol(config, state, {}, Mock(time=lambda: 0.0))
         protocol.connection_made(plug)
     assert [plug.pause_reading.called for plug in plugs] == [False] * 3 + [True] * 2
     assert len(state.connections) == 3
@@ -70,6 +71,23 @@ def test_who_is_refused_hears_so_after_a_while_and_few_wait_for_it(place, monkey
         assert first.recv(65536).startswith(b"HTTP/1.1 429 ")
         assert second.recv(65536).startswith(b"HTTP/1.1 429 ")
     assert time.monotonic() - begun > 0.3
+
+
+def test_an_address_that_connects_too_often_waits_and_a_proxy_does_not(place, monkeypatch):
+    """20 senders that cut their uploads and came again kept others waiting for 374 ms."""
+    monkeypatch.setattr(connections, "AT_ONCE", 1)
+    monkeypatch.setattr(connections, "MOST_PER_S", 2.0)
+
+    def took_s(source):
+        begun = time.monotonic()
+        with opened_from(place, source) as plug:
+            assert answer(plug).startswith(b"HTTP/1.1 200 ")
+        return time.monotonic() - begun
+
+    assert took_s("127.0.0.9") < 0.4
+    assert took_s("127.0.0.9") > 0.4
+    assert took_s("127.0.0.10") < 0.4
+    assert max(took_s("127.0.0.1") for _ in range(3)) < 0.4
 
 
 def test_of_a_request_that_is_answered_nothing_more_is_parsed(place, monkeypatch):
