@@ -149,6 +149,9 @@ def program_of(stored: Mapping[str, Any] | None) -> Program:
         )
         measured = stored["thermometer"]
         thermometer = None if measured is None else Thermometer(**measured)
+        columns = (*stored["columns"], *([thermometer.column] if thermometer else ()))
+        if not all(isinstance(name, str) for name in columns):
+            raise TypeError(f"expected names of columns, got {str(columns)[:60]}")
         made = Program(tuple(stored["columns"]), steps, thermometer, str(stored["words"]))
     except _DAMAGED as error:
         raise NoCodeError(f"the old document's program is damaged: {error}") from error

@@ -116,7 +116,13 @@ def test_no_code_is_written_for_a_document_without_a_program(camera: Calibration
 
 @pytest.mark.parametrize(
     "change",
-    [{"steps": [{"name": "readings"}]}, {"steps": None}, {"columns": None}],
+    [
+        {"steps": [{"name": "readings"}]},
+        {"steps": None},
+        {"columns": None},
+        {"columns": ["a", False]},
+        {"thermometer": {"column": 1, "unit": "K", "scale": 1.0, "offset": 0.0}},
+    ],
 )
 def test_a_damaged_program_is_refused(camera: Calibration, change: dict[str, Any]) -> None:
     stored = stored_program(flight_code(SENSORS["six faces"].calibrated(camera)).program)
