@@ -12,8 +12,8 @@ from files.reading import FileRefusedError, read_json
 
 #: Member that holds the digest of all the others.
 DIGEST = "digest"
-#: Far beyond the largest calibration (tables of 10 MB), and little for any machine.
-LARGEST_BYTES = 200_000_000
+#: Thrice the largest calibration (tables of 10 MB); what is so large is refused within 2 s.
+LARGEST_BYTES = 30_000_000
 #: Deeper than any document, and far from where Python gives up.
 _DEEPEST = 50
 
