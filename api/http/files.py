@@ -13,7 +13,13 @@ from api.schema.words import DatasetName
 from api.service import datasets as service
 from api.web.answers import AnswerRoute, Columns, Picture, StrictRoute, link
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.static_files import PAGE, file_of, plotly_file, plotly_name
+from api.web.static_files import (
+    PAGE,
+    file_of,
+    kept,
+    page_address,
+    styles,
+)
 
 router = APIRouter(prefix="/v1/datasets", route_class=AnswerRoute, dependencies=[NO_PARAMETERS])
 static = APIRouter(route_class=StrictRoute, include_in_schema=False)
@@ -80,11 +86,14 @@ def _file(known: Known, name: str, kind: str) -> Response:
 
 
 @static.get("/page/{name:path}", dependencies=[NO_PARAMETERS])
-def page_file(name: str, request: Request) -> Response:
-    """Give a file of the page, or plotly.js."""
-    if name == plotly_name():
-        return plotly_file(request.headers.get("accept-encoding", ""))
-    return file_of(PAGE, name, "page")
+def page_file(name: str) -> Response:
+    """Give a file of the page, by its name or below `page_address`."""
+    plain = f"/page/{name}".removeprefix(f"{page_address()}/")
+    if plain == f"/page/{name}":
+        return file_of(PAGE, name, "page")
+    if plain == "styles.css":
+        return kept(Response(styles(), media_type="text/css"))
+    return kept(file_of(PAGE, plain, "page"))
 
 
 @static.get("/guide")

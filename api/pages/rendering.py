@@ -13,7 +13,7 @@ from api import addresses
 from api.pages import numbers, terms
 from api.pages.methods import mark_up
 from api.pages.sensor_drawings import sensor
-from api.web.static_files import plotly_name
+from api.web.static_files import page_address
 
 
 @cache
@@ -30,7 +30,7 @@ def environment() -> Environment:
         navigation=addresses.NAVIGATION,
         sensor=sensor,
         glossary=terms.glossary(),
-        plotly_name=plotly_name,
+        static=page_address(),
         **vars_of(addresses.GIVEN),
     )
     made.filters.update(

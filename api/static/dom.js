@@ -18,7 +18,7 @@ export function h(tag, attributes = {}, ...children) {
 }
 
 /** The path of the service without its last slash: "" or the prefix that a proxy gives it. */
-export const ROOT = new URL("..", import.meta.url).pathname.slice(0, -1);
+export const ROOT = new URL(import.meta.url).pathname.replace(/\/page\/.*$/, "");
 
 export const byId = (id) => document.getElementById(id);
 

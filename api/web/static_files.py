@@ -1,13 +1,15 @@
-"""Files that are served as they are: those of the pages, and of the guide."""
+"""Files that are served as they are: those of the pages, and of the guide.
+
+plotly.js is one of the pages' own, with the traces of our figures alone (`tools/plotly`): a third
+of the file in the package plotly, which took 7 s at 1.6 Mbit/s.
+"""
 
 from __future__ import annotations
 
-import gzip
 import hashlib
 import mimetypes
 from functools import cache
 from importlib.resources import files
-from importlib.util import find_spec
 from pathlib import Path
 
 from fastapi import Response
@@ -18,6 +20,8 @@ from api.service.problems import Problem, Violation
 mimetypes.add_type("font/woff2", ".woff2")  # not known to every system
 #: The pages' own files, and those of Swagger UI.
 PAGE = StaticFiles(directory=str(files("api") / "static"), packages=[("fastapi_offline", "static")])
+
+_STYLES = ("base", "parts", "masthead", "tables", "architectures", "pages", "figures")
 
 
 def file_of(place: StaticFiles, name: str, what: str) -> Response:
@@ -38,30 +42,26 @@ def file_of(place: StaticFiles, name: str, what: str) -> Response:
 
 
 @cache
-def _plotly() -> Path:
-    """Return the file of plotly.js in the installed package, which is not imported for it."""
-    found = find_spec("plotly")
-    if found is None or found.origin is None:
-        raise ModuleNotFoundError("figures are drawn by plotly.js of the package plotly")
-    return Path(found.origin).parent / "package_data" / "plotly.min.js"
+def page_address() -> str:
+    """Return the address below which the pages' files can be kept for a year.
+
+    It ends with a digest of all of them, as they import each other.
+    """
+    digest = hashlib.sha256(styles())
+    for path in sorted((files("api") / "static").iterdir(), key=lambda path: path.name):
+        if path.is_file():
+            digest.update(path.read_bytes())
+    return f"/page/{digest.hexdigest()[:12]}"
 
 
 @cache
-def plotly_name() -> str:
-    """Return the name of plotly.js below /page, which changes with its content."""
-    return f"plotly-{hashlib.sha256(_plotly().read_bytes()).hexdigest()[:12]}.min.js"
+def styles() -> bytes:
+    """Return the styles of the pages as one file: they are read before anything is shown."""
+    place = files("api") / "static" / "styles"
+    return b"\n".join((place / f"{name}.css").read_bytes() for name in _STYLES)
 
 
-@cache
-def _plotly_packed() -> bytes:
-    """Return plotly.js packed by gzip, once in a fifth of a second: 1.5 of its 4.8 MB."""
-    return gzip.compress(_plotly().read_bytes(), 9, mtime=0)
-
-
-def plotly_file(accept_encoding: str) -> Response:
-    """Return plotly.js, packed where the client takes it so. It may be kept for a year."""
-    headers = {"Cache-Control": "public, max-age=31536000, immutable", "Vary": "Accept-Encoding"}
-    if "gzip" not in accept_encoding:
-        return Response(_plotly().read_bytes(), 200, headers, "text/javascript")
-    headers["Content-Encoding"] = "gzip"
-    return Response(_plotly_packed(), 200, headers, "text/javascript")
+def kept(response: Response) -> Response:
+    """Return a response that may be kept for a year."""
+    response.headers["Cache-Control"] = "public, max-age=31536000, immutable"
+    return response

@@ -97,9 +97,9 @@ def test_a_tap_is_a_click(browser: Browser, address: str) -> None:
 
 def test_a_picture_stays_where_plotly_does_not_come(wide: Visit) -> None:
     page = wide.page
-    page.route("**/plotly-*.js", lambda route: route.abort())
-    page.goto(wide.address + "/figures/error")
-    page.wait_for_event("console", lambda message: message.type == "error")
+    page.route("**/plotly.min.js", lambda route: route.abort())
+    with page.expect_console_message(lambda message: message.type == "error"):
+        page.goto(wide.address + "/figures/error")
     expect(page.locator(".live-figure img.on-light")).to_be_visible()
     assert page.locator(".figure-plot").count() == 0
 

@@ -4,6 +4,8 @@ import gzip
 
 import pytest
 
+from api.web.static_files import page_address
+
 PATHS = [
     "/v1/taxonomy",
     "/v1/studies/Chang2008",
@@ -60,6 +62,13 @@ def test_gzip_carries_the_same_bytes_under_another_etag(atlas, path):
     assert gzip.decompress(compressed) == body
     assert zipped.headers["etag"] != plain.headers["etag"]
     assert "Accept-Encoding" in zipped.headers["vary"]
+
+
+def test_files_of_the_page_below_their_digest_may_be_kept_and_others_not(atlas):
+    for name in ("page.js", "styles.css", "theme.js"):
+        assert "immutable" in atlas.get(f"{page_address()}/{name}").headers["cache-control"]
+    assert atlas.get("/page/page.js").headers["cache-control"] == "no-cache"
+    assert atlas.get("/page/0123456789ab/page.js").status_code == 404
 
 
 @pytest.mark.parametrize("path", [p for p in PATHS if p != "/"])
