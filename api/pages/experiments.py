@@ -7,30 +7,22 @@ from inspect import getdoc
 from pathlib import PurePosixPath
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path
 
 from api.pages.serving import PageRouter, View
 from api.schema.parameters import OneOf
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem
-from api.web.answers import AnswerRoute
+from api.web.answers import AnswerRoute, Drawing
 from api.web.dependencies import NO_PARAMETERS, Known
 from benchmark.running.experiment import RecordedExperiment, recorded_experiments
 
 router = PageRouter()
 #: Rows that a page shows; its CSV has all.
 SHOWN = 100
-SVG = "image/svg+xml"
 
 Name = Annotated[str, OneOf(lambda: tuple(recorded_experiments())), Path()]
-
-
-class Drawing(Response):
-    """An SVG."""
-
-    media_type = SVG
-
 
 pictures = APIRouter(route_class=AnswerRoute, include_in_schema=False)
 

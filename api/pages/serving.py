@@ -11,7 +11,7 @@ from fastapi.responses import HTMLResponse
 from pydantic_core import to_json
 
 from api.figures.figure import Figure
-from api.figures.picture import picture
+from api.figures.picture import picture, png
 from api.metadata.signposting import LandingPage, headers
 from api.pages.rendering import render
 from api.service.documents import Document
@@ -21,17 +21,18 @@ from api.web.answers import (
     Answer,
     Drawing,
     Handler,
+    Picture,
     Specification,
     StrictRoute,
     as_asked,
     link,
 )
-from api.web.negotiation import BIBTEX, CSV, JSON, PLOTLY, SVG, for_spreadsheets, media_type
+from api.web.negotiation import BIBTEX, CSV, JSON, PLOTLY, PNG, SVG, for_spreadsheets, media_type
 
 HTML = "text/html"
 OFFERED = (HTML, JSON, CSV)
 TWINS: Mapping[str, str] = {".json": JSON, ".csv": CSV}
-DRAWN: Mapping[str, str] = {".svg": SVG, ".plotly.json": PLOTLY}
+DRAWN: Mapping[str, str] = {".svg": SVG, ".png": PNG, ".plotly.json": PLOTLY}
 """Twins of figures: of the first of a page, or with its name before the suffix of any."""
 FILES: Mapping[str, str] = {".bib": BIBTEX}
 """Twins that only some pages have."""
@@ -98,6 +99,8 @@ class View(Response):
             raise Problem(404, "unknown-figure", errors=[Violation("figure", name, known)])
         if wanted == PLOTLY:
             return Specification(to_json(found.plotly))
+        if wanted == PNG:
+            return Picture(png(found.plotly))
         return Drawing(picture(found.plotly, found.title, found.description))
 
 

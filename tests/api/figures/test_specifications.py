@@ -6,11 +6,13 @@ import json
 import re
 from collections import Counter
 from collections.abc import Mapping
+from importlib.resources import files
 from xml.etree import ElementTree as ET
 
 import plotly.graph_objects as go
 import pytest
 
+from api.figures import plots, shapes
 from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.figure import Figure
 from api.figures.ordering import crossings, order
@@ -126,8 +128,13 @@ def test_a_picture_is_the_same_each_time_and_says_what_it_shows(
             assert {" ".join(one.split()) for one in wanted} <= {
                 " ".join(one.split()) for one in shown
             }
-    # every colour of the picture is a variable, which a dark page sets to another
-    assert not re.search(r"(?<![,(:])#[0-9a-f]{6}(?![;}])", drawn.split("</style>", 1)[1])
+    # a dark page has another for every colour, which programs without variables read, too
+    dark, plain = drawn.split("</style>", 1)
+    assert "var(" not in plain
+    painted = set(re.findall(r"[a-z-]+: #[0-9a-f]{6}", plain))
+    assert painted
+    assert painted == set(re.findall(r'\[style\*="([^"]*)"\]', dark))
+    assert len(re.findall(r"#[0-9a-f]{6}", plain)) == len(re.findall(r": #[0-9a-f]{6}", plain))
 
 
 def test_a_trace_that_cannot_be_drawn_is_refused() -> None:
@@ -141,3 +148,9 @@ def test_nodes_are_ordered_so_that_fewer_bands_cross() -> None:
     found = order([("a", "b"), ("y", "z")], links)
     assert crossings(found, links) == 0.0
     assert order([("a", "b"), ("y", "z")], links, pinned=(0, 1)) == (("a", "b"), ("y", "z"))
+
+
+def test_plotly_has_every_kind_of_trace_that_a_picture_has() -> None:
+    library = (files("api") / "static" / "plotly.min.js").read_text(encoding="utf-8")
+    there = set(re.findall(r'moduleType:"trace",name:"([a-z]+)"', library))
+    assert there == plots.TYPES | shapes.TYPES.keys()
