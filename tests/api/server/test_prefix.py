@@ -43,9 +43,11 @@ def proxied(
         with subprocess.Popen([*proxy, *say], stdout=subprocess.PIPE, text=True) as running:
             assert running.stdout is not None
             address = f"http://127.0.0.1:{running.stdout.readline().strip()}"
-            with httpx.Client(base_url=address, timeout=300) as client:
-                yield client
-            running.terminate()
+            try:
+                with httpx.Client(base_url=address, timeout=300) as client:
+                    yield client
+            finally:
+                running.terminate()
 
 
 def paths(document: Any) -> Iterator[str]:
