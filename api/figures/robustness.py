@@ -212,29 +212,29 @@ def _text(
     both = " and ".join(asked)
     if not datasets:
         yield f"No data set has {both}; columns show each by itself."
-    else:
-        yield f"Data sets with {both}: {len(datasets)}."
-        if best and len(best) <= _MOST_NAMED:
-            named = (
-                f"{row['name']} on {row['dataset']} ({digits(row['over_bound'])} times the bound)"
-                for row in best
-            )
-            yield f"Smallest error under the worst of them: {', '.join(named)}."
-        yield from _best([row for row in items if row["condition"] == WORST], rows)
+        return
+    if best and len(best) <= _MOST_NAMED:
+        named = (
+            f"{row['name']} on {row['dataset']} ({digits(row['over_bound'])} times the bound)"
+            for row in best
+        )
+        yield f"Smallest error under the worst of {both}: {', '.join(named)}."
+    worst = [row for row in items if row["condition"] == WORST]
+    yield from _best(worst, rows, len(datasets))
 
 
-def _best(worst: Sequence[Row], rows: str) -> Iterator[str]:
+def _best(worst: Sequence[Row], rows: str, datasets: int) -> Iterator[str]:
     """Say which rows err least under the worst of what is asked, and how good that is."""
     known = [row for row in worst if row["over_bound"] is not None]
     if not known:
         yield f"No {rows} has 95 % availability there."
         return
     listed = "; ".join(
-        f"{row['name']} ({digits(row['over_best'])} times the best, {digits(row['over_bound'])} "
-        f"times the bound, on {row['data_sets']})"
+        f"{row['name']} ({digits(row['over_best'])} times the best of each, "
+        f"{digits(row['over_bound'])} times the bound, on {row['data_sets']})"
         for row in known[:_FIRST]
     )
-    yield f"Nearest to the best {rows} of each data set, in the median: {listed}."
+    yield f"One {rows} for all data sets that have them ({datasets}), in the median: {listed}."
     near = sum(row["over_bound"] <= _NEAR for row in known)
     yield f"Of {len(worst)}, {near} are within {_NEAR:g} times the bound under the worst of them."
 
@@ -250,16 +250,18 @@ def _pairwise_text(pairwise: Sequence[Row]) -> Iterator[str]:
                 f"{100 * row['share_low']:.0f} to {100 * row['share_high']:.0f} % as if boards "
                 "were independent)"
             )
+        if row["ratio"] is not None:
+            low, high = row["ratio_low"] or 0.0, row["ratio_high"] or math.inf
+            settled = low > 1.0 or high < 1.0
+            better = f"{second if low > 1.0 else first} is better"
+            yield (
+                f"{row['scope'].capitalize()}: {better if settled else 'neither is shown better'}. "
+                f"The error of {first} is {digits(row['ratio'], 2)} times that of {second} in the "
+                f"median; 95 % interval over {row['data_sets']} data sets: {digits(low, 2)} to "
+                f"{digits(row['ratio_high'], 2, 'no limit')}."
+            )
         yield (
             f"{row['scope'].capitalize()}, {boards} boards of {row['data_sets']} data sets: "
             f"{first} has the smaller error on {row['wins']}{share}, {second} on {row['losses']}; "
             f"equal within 3 % on {row['ties']}; on {row['neither']} neither has 95 % availability."
         )
-        if row["ratio"] is not None:
-            low, high = row["ratio_low"] or 0.0, row["ratio_high"]
-            said = "does not exclude" if low <= 1.0 <= (high or math.inf) else "excludes"
-            yield (
-                f"The error of {first} is {digits(row['ratio'], 2)} times that of {second} in the "
-                f"median; the 95 % interval over data sets, {digits(low, 2)} to "
-                f"{digits(high, 2, 'no limit')}, {said} equal errors."
-            )

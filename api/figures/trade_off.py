@@ -148,10 +148,11 @@ def _text(  # noqa: PLR0917 - what a sentence each says
     left_out: int,
     folded: int,
 ) -> Iterator[str]:
+    column, words, unit = AXES[across]
     of = {status: [row for row in rows if row["status"] == status] for status in _LOOKS}
-    what = "Reports" if level == "reported" else "Pipelines"
+    what = "Reported sensors" if level == "reported" else "Pipelines"
     if not rows:
-        yield f"{what} with an error and a value across: none."
+        yield f"{what} with an error and a known {words}: none."
         return
     tested = (
         f", {len(of['not separable'])} not separable from it by the paired test over units, "
@@ -162,7 +163,6 @@ def _text(  # noqa: PLR0917 - what a sentence each says
         f"{what}: {len(rows)}, of which {len(of['frontier'])} on the frontier"
         f"{'' if level == 'reported' else tested}."
     )
-    column, _, unit = AXES[across]
     ends = sorted(of["frontier"], key=lambda row: row["error_deg"])
     start, end = (
         f"{row['name']} ({digits(row['error_deg'])} deg at {row[column]:.4g} {unit})"
@@ -172,6 +172,6 @@ def _text(  # noqa: PLR0917 - what a sentence each says
     if folded:
         yield f"{what} not drawn, as they are far behind on their board: {folded}."
     if left_out:
-        yield f"{what} without a value across: {left_out}."
+        yield f"{what} left out, as their {words} is not known: {left_out}."
     if across == "latency" and timed_on:
         yield f"Times were measured on {timed_on}."

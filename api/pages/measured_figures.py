@@ -73,7 +73,7 @@ async def trade_off(known: Known, query: Annotated[TradeOffQuery, Query()]) -> V
     axes, errors = trade_off_of.AXES, trade_off_of.ERRORS
     choices = [
         Choice("across", "Against", tuple(axes), [query.across], ""),
-        Choice("level", "Error", tuple(errors), [query.level or ""], "default"),
+        Choice("level", "Error", tuple(errors), [query.level or ""], "usual"),
         *_values(known, query, "detector", "mask"),
         Choice("dataset", "Data set", words.datasets(), query.dataset),
         Choice("extractor", "Extractor", words.extractors(), query.extractor),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import Query
@@ -21,6 +22,8 @@ from registry.taxonomy import ATTRIBUTES
 router = PageRouter()
 
 MOST = 60
+FEW = 4
+"""Hits of a kind that are shown where all kinds are asked for."""
 COLUMNS = ("kind", "id", "title", "excerpt", "score", "page")
 KIND_NAMES = {
     "study": "Studies",
@@ -61,15 +64,29 @@ async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> View:
             "score": hit.score,
             "page": page_of(hit.entry),
         }
-        for hit in hits[:MOST]
+        for hit in hits
     ]
-    document = {"q": query.q, "items": items, "total": len(hits)}
+    shown = items[:MOST]
+    document = {"q": query.q, "items": shown, "total": len(hits)}
     return View(
         "search.html",
-        Document(document, COLUMNS, lambda: items),
+        Document(document, COLUMNS, lambda: shown),
         asked=query,
         kinds=KIND_NAMES,
+        groups=_grouped(shown if query.kind else items),
+        few=FEW,
+        verdicts={
+            key: one.verdict or "not measured" for key, one in known.measurements.claims.items()
+        },
     )
+
+
+def _grouped(items: Sequence[dict[str, Any]]) -> list[list[dict[str, Any]]]:
+    """Return what is found by kind, the kind of the best hit first."""
+    of: dict[str, list[dict[str, Any]]] = {}
+    for item in items:
+        of.setdefault(item["kind"], []).append(item)
+    return [*of.values()]
 
 
 def page_of(entry: Entry) -> str:

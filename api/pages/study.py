@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import Path, Query, Request
 from pydantic import Field
@@ -15,6 +15,8 @@ from api.schema.parameters import GIVEN
 from api.schema.studies import StudiesQuery
 from api.schema.words import StudyKey
 from api.service import studies as service
+from api.service.knowledge import Knowledge
+from api.service.ladder import ladder
 from api.web.dependencies import Known
 from benchmark.leaderboard.board import NOMINAL
 from benchmark.metrics.score import AVAILABLE
@@ -116,7 +118,15 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
         last_mapped=known.editions[0].last_year,
         edition=next(one for one in known.editions if one.name == answer.document["edition"]),
         claims=claims,
+        standard=_standard(known, key) if answer.document["own_sensor"] else None,
         verdicts={e.claim.id: e.verdict for e in known.measurements.claims.values()},
         datasets=[c for c in known.measurements.cards if key in c["follows"]],
         algorithms=[i for i in known.catalogue.implementations(None) if key in i.studies],
     )
+
+
+def _standard(known: Knowledge, key: str) -> dict[str, Any] | None:
+    """Return the rungs of a study's method on the standard sensor of its kind; None for none."""
+    resolution = known.standard_resolutions.get(key)
+    own = service.headline(resolution, known) if resolution else None
+    return ladder(own, known.measurements)

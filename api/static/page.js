@@ -1,6 +1,7 @@
 /* The page: a change of the form asks anew, and what the service answers takes the answer's place. */
 
 import { byId, problemNotice, ROOT } from "./dom.js";
+import { copiable } from "./enhance.js";
 import { watch } from "./live.js";
 
 const PARTS = ["summary", "answer", "flow"];
@@ -54,6 +55,7 @@ async function show(query, { ofForm = false } = {}) {
     for (const id of PARTS) {
       byId(id).replaceChildren(...page.getElementById(id).childNodes);
       watch(byId(id));
+      copiable(byId(id));
     }
   } catch (problem) {
     if (problem.name === "AbortError") return;

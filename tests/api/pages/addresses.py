@@ -13,6 +13,7 @@ KINDS = {
     "answer, refused": "/?detector=CMOSS",
     "studies": "/studies",
     "study": "/studies/Chang2008",
+    "study without a mask": "/studies/Delgado2010",
     "algorithms": "/algorithms",
     "extractor": "/algorithms/tm",
     "model": "/algorithms/lsq",
