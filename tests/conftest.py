@@ -88,10 +88,8 @@ def _same_cells_are_read_and_checked_once() -> Iterator[None]:
     """Many tests begin with the shipped tables and change a cell: what else there is, is known.
 
     A file is read again where its bytes differ, a table typed where its cells do, and checked by
-    frictionless, alone, where its cells or those of a table that its keys refer to do.
+    frictionless where its cells or those of a table that its keys refer to do.
     """
-    import frictionless
-
     from survey_data import table_records, tables
     from survey_data.descriptor import descriptor, file_name
     from survey_data.validation import validate as validation
@@ -107,7 +105,6 @@ def _same_cells_are_read_and_checked_once() -> Iterator[None]:
         validation._check_schema,
     )
     files, frames, found = {}, {}, {}
-    whole, asked = frictionless.Package.validate, [None]
 
     def kept_records(path, columns):
         if not path.is_file():
@@ -135,18 +132,12 @@ def _same_cells_are_read_and_checked_once() -> Iterator[None]:
             those |= {name: sound[name] for name in referred[table] if name in sound}
             key = (table, *(said[name] for name in those))
             if key not in found:
-                asked.append(table)
                 elsewhere = {file_name(name) for name in those if name != table}
                 found[key] = [each for each in check(those) if each.file not in elsewhere]
-                asked.pop()
             problems += found[key]
         return problems
 
-    def of_asked(package, **options):
-        return whole(package, **{"name": asked[-1], **options})
-
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(frictionless.Package, "validate", of_asked)
         patch.setattr(table_records, "read_records", kept_records)
         patch.setattr(tables, "typed_frame", kept_frame)
         patch.setattr(validation, "typed_frame", kept_frame)

@@ -1,4 +1,4 @@
-"""`sunatlas studies` and `dataset`: the same answers in every format."""
+"""`sunatlas studies` takes what its tables print."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""What every command of `sunatlas` keeps: quick help, one-line errors, exit codes, quiet pipes."""
+"""What every command of `sunatlas` keeps: quick help, and what can be asked."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""`sunatlas run`, `benchmark` and `leaderboard`: measured once, read afterwards, checked."""
+"""`sunatlas run`: measured once, and read afterwards."""
 
 import json
 from pathlib import Path
@@ -53,6 +53,3 @@ def test_the_working_store_is_where_it_is_said_to_be(monkeypatch, environment, e
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     assert user_cache() == expected
-
-
-# ---- leaderboard

@@ -1,7 +1,4 @@
-"""`sunatlas leaderboard` and `rank`: what they print of what was measured, compared or chosen.
-
-Measuring has tests of its own (`test_cli_measuring.py`); here a stand-in tells how it went.
-"""
+"""`sunatlas leaderboard --check`: what it prints of differences, and its exit code."""
 
 from __future__ import annotations
 
@@ -63,6 +60,3 @@ def test_a_check_that_finds_differences_fails_and_lists_them(checked: Checked) -
     )
     table = sunatlas("leaderboard", "--check")
     assert table.stdout.startswith("2 differences\n")
-
-
-# ---- leaderboard --dataset

@@ -1,4 +1,4 @@
-"""Designs that no data set can be made of are refused, and cards say what is simulated."""
+"""A flight's instruments bound the direction together with the readings."""
 
 from __future__ import annotations
 
