@@ -25,10 +25,9 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
     lines = [
         *prose(
             "The best pipeline of each architecture (detector, mask) under nominal conditions, by "
-            "own error. flight: error of the same, calibrated on the ground once and flown, deg. "
-            "own: own error, deg. bounds: RMS of unit 0 over the Cramer-Rao bound with the unit "
-            "known. bench: error on the standard bench, deg. =: tie with the runner-up in a paired "
-            "test. "
+            "own error. Errors in deg: flight, calibrated on the ground once and flown; own; bench, "
+            "calibrated on the standard bench. bounds: RMS of unit 0 over the Cramer-Rao bound, the "
+            "unit known. =: tie with the runner-up in a paired test. "
             f"{tally(rows)}",
             room,
         ),

@@ -83,7 +83,8 @@ def test_every_check_ran_on_every_implementation(request):
         for path in (Path(algorithms.__file__).parent / folder).rglob("*.py")
     ]
     declared = sum(
-        len(re.findall(r"^    about: ClassVar = About", text, re.MULTILINE)) for text in source
+        len(re.findall(r"^    about: ClassVar = (?:About|replace\()", text, re.MULTILINE))
+        for text in source
     )
     found = (EXTRACTORS, COMPENSATIONS, MODELS, SEQUENCES)
     assert declared == sum(map(len, found)) >= 14
