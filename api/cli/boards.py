@@ -27,7 +27,7 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
             "The best pipeline of each architecture under nominal conditions, by own error. Errors "
             "in deg: flight, calibrated on the ground once and flown; own; bench, calibrated on "
             "the standard bench. bounds: RMS of unit 0 over the Cramer-Rao bound, the unit known. "
-            "=: tie with the runner-up (paired test). "
+            "=: tie with the runner-up. "
             f"{tally(rows)}",
             room,
         ),
