@@ -56,6 +56,15 @@ def test_every_mark_of_the_gap_is_a_number_of_its_row(atlas: Any) -> None:
     assert ends == pytest.approx([row["flight_high_deg"] for row in flown])
 
 
+def test_the_gap_counts_what_comes_near_the_bound(atlas: Any) -> None:
+    rows = [
+        row for row in document(atlas, GAP)["items"] if row["own_error_deg"] and row["bound_deg"]
+    ]
+    near = [row for row in rows if row["own_error_deg"] <= 2.0 * row["bound_deg"]]
+    page = atlas.get("/figures/gap", accept="text/html").text
+    assert f"within 2 times the bound for {len(near)} of {len(rows)}." in page
+
+
 def test_the_gap_says_what_the_answer_says(atlas: Any) -> None:
     rows = {(row["detector"], row["mask"]): row for row in document(atlas, GAP)["items"]}
     for one in document(atlas, "/v1/recommendations?limit=100")["architectures"]:

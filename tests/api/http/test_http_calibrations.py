@@ -6,16 +6,19 @@ import gzip
 import hashlib
 import io
 import json
+import re
 import subprocess
 import sys
 import tempfile
 import zipfile
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from calibrate import uploaded
+from calibrate.settings import Kind
 from calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads
 
 BAD = b"x_px,y_px,alpha,beta\n1,b,3,4\n"
@@ -75,6 +78,8 @@ def test_the_page_takes_a_form_without_a_script_and_keeps_nothing(atlas, tmp_pat
     page = atlas.get("/calibrate")
     assert page.status_code == 200
     assert 'enctype="multipart/form-data"' in page.text
+    offered = json.loads(re.findall(r'"kinds": (\[\[.*?\]\])', page.text)[0])
+    assert [kind for kind, _ in offered] == [kind for kind in get_args(Kind) if kind != "frames"]
     refused = atlas.post(
         "/calibrate", files={"file": ("b.csv", BAD)}, headers={"Accept": "text/html"}
     )

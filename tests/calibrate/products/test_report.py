@@ -99,6 +99,15 @@ def test_the_field_of_a_square_reaches_farther_in_its_corners() -> None:
     assert field_of(aside) is None
 
 
+def test_a_sweep_reaches_to_its_two_ends() -> None:
+    off = np.radians(np.linspace(-30.0, 50.0, 17))
+    sun = np.column_stack([np.sin(off), np.zeros(17), np.cos(off)])
+    field = field_of(sun)
+    assert field is not None
+    assert (field.least_deg, field.most_deg) == pytest.approx((30.0, 50.0))
+    assert field_of(sun[off > 0.1]) is None
+
+
 def test_the_cone_of_all_poses_is_found_once_a_calibration(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 100,000 poses it takes seconds; verdict, table and picture of the field look at it."""
     found: list[str] = []
