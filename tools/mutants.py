@@ -82,6 +82,8 @@ def tests_of(module: str) -> list[Path]:
     while not (ROOT / folder).is_dir():
         folder = folder.parent
     beside = [path for path in every if path.is_relative_to(ROOT / folder)]
+    if module.startswith("algorithms/"):  # which imports what it discovers
+        beside.append(ROOT / "tests/algorithms/test_common_suite.py")
     return list(dict.fromkeys(found + beside))
 
 
