@@ -150,14 +150,19 @@ def program_of(stored: Mapping[str, Any] | None) -> Program:
         measured = stored["thermometer"]
         thermometer = None if measured is None else Thermometer(**measured)
         columns = (*stored["columns"], *([thermometer.column] if thermometer else ()))
-        if not all(isinstance(name, str) for name in columns):
-            raise TypeError(f"expected names of columns, got {str(columns)[:60]}")
+        if isinstance(stored["columns"], str) or not all(isinstance(c, str) for c in columns):
+            raise TypeError(f"expected names of columns, got {stored['columns']!r:.60}")
         made = Program(tuple(stored["columns"]), steps, thermometer, str(stored["words"]))
     except _DAMAGED as error:
         raise NoCodeError(f"the old document's program is damaged: {error}") from error
     unknown = [step.name for step in steps if step.name not in step_functions()]
     if unknown or not steps or steps[0].name != "readings":
         raise NoCodeError(f"the old document's program is damaged: steps {unknown or 'missing'}")
+    places = np.asarray(steps[0].constants.get("place", -1))
+    if not np.isin(places, np.arange(len(made.columns))).all():
+        raise NoCodeError(
+            f"the old document's program is damaged: it has {len(made.columns)} columns"
+        )
     return made
 
 

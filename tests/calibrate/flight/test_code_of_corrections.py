@@ -121,6 +121,8 @@ def test_no_code_is_written_for_a_document_without_a_program(camera: Calibration
         {"steps": None},
         {"columns": None},
         {"columns": ["a", False]},
+        {"columns": "six names"},
+        {"columns": ["a"]},
         {"thermometer": {"column": 1, "unit": "K", "scale": 1.0, "offset": 0.0}},
     ],
 )
