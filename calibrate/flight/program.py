@@ -159,7 +159,7 @@ def program_of(stored: Mapping[str, Any] | None) -> Program:
     if unknown or not steps or steps[0].name != "readings":
         raise NoCodeError(f"the old document's program is damaged: steps {unknown or 'missing'}")
     places = np.asarray(steps[0].constants.get("place", -1))
-    if not np.isin(places, np.arange(len(made.columns))).all():
+    if places.dtype.kind != "i" or not np.isin(places, np.arange(len(made.columns))).all():
         raise NoCodeError(
             f"the old document's program is damaged: it has {len(made.columns)} columns"
         )

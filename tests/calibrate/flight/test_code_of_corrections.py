@@ -130,6 +130,9 @@ def test_a_damaged_program_is_refused(camera: Calibration, change: dict[str, Any
     stored = stored_program(flight_code(SENSORS["six faces"].calibrated(camera)).program)
     with pytest.raises(NoCodeError, match="damaged"):
         program_of(stored | change)
+    stored["steps"][0]["constants"]["place"] = [0.0] * 6
+    with pytest.raises(NoCodeError, match="damaged"):
+        program_of(stored)
 
 
 def test_a_correction_of_a_correction_is_in_the_code(camera: Calibration, tmp_path: Path) -> None:
