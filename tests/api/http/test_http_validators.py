@@ -64,6 +64,14 @@ def test_gzip_carries_the_same_bytes_under_another_etag(atlas, path):
     assert "Accept-Encoding" in zipped.headers["vary"]
 
 
+@pytest.mark.parametrize("refused", ["gzip;q=0", ""])
+def test_who_refuses_gzip_is_not_sent_it_whoever_asked_before(atlas, refused):
+    raw_body(atlas, "/v1/taxonomy", {"Accept-Encoding": "gzip"})
+    plain, body = raw_body(atlas, "/v1/taxonomy", {"Accept-Encoding": refused})
+    assert "content-encoding" not in plain.headers
+    assert body.startswith(b"{")
+
+
 def test_files_of_the_page_below_their_digest_may_be_kept_and_others_not(atlas):
     for name in ("page.js", "styles.css", "theme.js"):
         assert "immutable" in atlas.get(f"{page_address()}/{name}").headers["cache-control"]
