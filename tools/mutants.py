@@ -82,8 +82,11 @@ def tests_of(module: str) -> list[Path]:
     while not (ROOT / folder).is_dir():
         folder = folder.parent
     beside = [path for path in every if path.is_relative_to(ROOT / folder)]
-    if module.startswith("algorithms/"):  # which imports what it discovers
+    # which import what they discover
+    if module.startswith("algorithms/"):
         beside.append(ROOT / "tests/algorithms/test_common_suite.py")
+    if module.startswith(("benchmark/simulator/", "benchmark/datasets/")):
+        beside.append(ROOT / "tests/benchmark/datasets/test_published_heads.py")
     return list(dict.fromkeys(found + beside))
 
 

@@ -5,10 +5,9 @@ from itertools import groupby
 import numpy as np
 import pytest
 
-from benchmark import datasets
 from benchmark.leaderboard.check import check, compare_scores
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import Parts, installed_parts
+from benchmark.plan.parts import installed_parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import condition_data, pinning, runner
 
@@ -79,36 +78,6 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
         "times.csv", "times_machine.json", "equal_height.csv", "equal_height.json",
         "as_sold.csv", "as_sold.json",
     }  # fmt: skip
-
-
-#: Of which a few samples take long: light from the Earth, motion, tables of holes, megapixels.
-COSTLY = {
-    "ccd-lens", "ccd-multi-aperture", "ccd-multi-slit", "ccd-multi-slit-orbit", "ccd-orbit",
-    "ccd-periodic", "ccd-single-aperture", "ccd-vernier", "pda-n-slit",
-    "cmos-multi-aperture-glass", "cmos-single-aperture-thick", "qpd-orbit",
-    "cmos-compound-eye", "cmos-encoded", "cmos-encoded-oblique", "cmos-encoded-sizes",
-    "cmos-l-slit", "cmos-lens", "pd-code-dial",
-    "cmos-multi-aperture", "cmos-single-aperture", "cmos-single-aperture-pinhole", "cmos-slit",
-    "event-l-slit", "event-single-aperture", "ltf-maskless-cube", "pd-albedo-orbit",
-    "pd-maskless-cube", "pd-maskless-pyramid", "pd-orbit", "pva-maskless-panels",
-    "pva-maskless-pyramid", "pva-maskless-sphere", "pva-orbit",
-}  # fmt: skip
-BY_COST = [
-    pytest.param(name, marks=pytest.mark.slow) if name in COSTLY else name
-    for name in datasets.names()
-]
-
-
-@pytest.mark.parametrize("name", BY_COST)
-def test_no_data_or_bound_changed_in_silence(published, name):
-    """The first samples of every split: a change of the simulator needs a new version."""
-    preset = datasets.get(name)
-    pins = published.pins()
-    assert {place for place in pins if place[0] == name} == pinning.places(
-        Parts({name: preset}, {}, {})
-    )
-    assert {pins[place].version for place in pins if place[0] == name} == {preset.version}
-    assert pinning.changed_heads(pins, [preset]) == {}
 
 
 @pytest.fixture(scope="module")
