@@ -1,4 +1,4 @@
-"""Every data set is the one that was published: the same first samples, and the same bound of them."""
+"""Every data set is the one that was published: the same first samples, and the same bound."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from benchmark.plan.parts import Parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
 
-#: Of which four samples of one split take seconds: tables of holes, light from the Earth, megapixels.
+#: Of which four samples of a split take seconds: tables of holes, light from the Earth, megapixels.
 SECONDS = {
     "ccd-multi-aperture", "ccd-multi-slit-orbit", "ccd-orbit", "ccd-single-aperture",
     "cmos-compound-eye", "cmos-encoded-sizes", "cmos-l-slit", "cmos-multi-aperture",

@@ -5,11 +5,12 @@ from itertools import groupby
 import numpy as np
 import pytest
 
+from benchmark import datasets
 from benchmark.leaderboard.check import check, compare_scores
 from benchmark.plan import combinations as plan
 from benchmark.plan.parts import installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import condition_data, pinning, runner
+from benchmark.running import condition_data, runner
 
 #: Standard errors by which the best of some hundred unbiased scores may fall below the bound.
 BY_CHANCE = 4.0
