@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -12,7 +13,7 @@ import pytest
 
 from algorithms.calibration.documents import DIGEST
 from algorithms.calibration.saving import UnreadableCalibrationError
-from calibrate import documents
+from calibrate import documents, products
 from calibrate.calibration import Calibration, calibrate
 from calibrate.documents import load, save, with_correction
 from calibrate.recalibration import Correction
@@ -68,6 +69,14 @@ def test_a_certificate_of_nine_poses_has_no_noise_no_rings_and_no_parameters(
     assert (left | {"Parameters of the model"}) & said == set()
     assert "RMS error of samples left out of the fit" in said
     assert left <= names_in(certificate(warm))
+
+
+def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(products, "report", lambda *_: "")
+    about = replace(warm.model.about, context=("nadir",))
+    made = products.products(replace(warm, model=replace(warm.model, about=about)), "box")
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
+    assert made["box_no_code.txt"] == "No code was written: code for flight knows no nadir.\n"
 
 
 def test_a_correction_is_saved_on_top_of_those_before(nine: Calibration, tmp_path: Path) -> None:

@@ -57,6 +57,14 @@ def test_sensors_without_a_height_or_an_error_are_left_out_and_counted():
     assert "3 have no height or error" in found.sentence
 
 
+def test_four_sensors_are_too_few():
+    assert height_order([(0.01 / height, height) for height in (0.5, 0.75, 1.2, 3.0)]) is None
+
+
+def test_equal_heights_have_no_order():
+    assert height_order([(0.01 * n, 1.0) for n in range(1, 8)]) is None
+
+
 def test_a_spot_found_alike_errs_alike_at_equal_height():
     position_mm = 1e-4
     scaled = {

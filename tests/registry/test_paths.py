@@ -125,3 +125,9 @@ def test_a_study_is_shared_out_so_that_what_flows_in_flows_out(survey: Facts) ->
     families = {n.value for n in whole.nodes if n.level == "model_category"}
     models = {survey.taxonomy.derived_values("model_category", path[3]) for path in whole.paths}
     assert families == models
+
+
+def test_an_impossible_question_has_no_flow(survey: Facts) -> None:
+    ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
+    flow = answer_flow(recommend(ask, facts=survey))
+    assert (flow.paths, flow.nodes, flow.links) == ({}, (), ())

@@ -20,6 +20,39 @@ TABLE: Rows = [
 ]
 
 
+def in_order(facts: Facts, level: str, values: set[str]) -> list[str]:
+    return [value for value in facts.taxonomy.values(level) if value in values]
+
+
+def test_nodes_and_links_stand_in_the_order_of_the_chart(facts_of: Build) -> None:
+    facts = facts_of(TABLE)
+    found = chart("task", facts=facts)
+    expected = {
+        "task": in_order(facts, "task", {"Cost", "Accuracy"}),
+        "detector": in_order(facts, "detector", {"PD", "CMOS"}),
+        "mask": in_order(facts, "mask", {"Slit", "Lens", "Encoded"}),
+    }
+    ids = [f"{level}:{value}" for level, values in expected.items() for value in values]
+    assert [node.id for node in found.nodes] == ids
+    assert [(node.level, node.value) for node in found.nodes] == [
+        (level, value) for level, values in expected.items() for value in values
+    ]
+    place = {name: at for at, name in enumerate(ids)}
+    ends = [(place[link.source], place[link.target]) for link in found.links]
+    assert ends == sorted(ends)
+    assert len(set(ends)) == len(ends) == 4 + 5
+    assert {node.id: node.count for node in found.nodes} == {
+        "task:Cost": 2, "task:Accuracy": 2, "detector:PD": 2, "detector:CMOS": 3,
+        "mask:Slit": 1, "mask:Lens": 2, "mask:Encoded": 2,
+    }  # fmt: skip
+    assert found.studies == ("S0", "S1", "S2", "S3")
+    assert [(left.level, left.studies) for left in found.left_out] == [
+        ("task", ("S3",)),
+        ("mask", ("S2",)),
+    ]
+    assert found.left_out[0].to_dict() == {"level": "task", "count": 1, "studies": ["S3"]}
+
+
 def test_fractions_of_a_study_add_up_to_one_at_every_level(facts_of: Build) -> None:
     found = chart("task", counting="fractional", facts=facts_of(TABLE))
     assert {node.id: node.count for node in found.nodes} == pytest.approx(

@@ -8,6 +8,7 @@ from registry.recommendation import recommend
 from registry.requirements import (
     LIMITS,
     MISSIONS,
+    PARAMETERS,
     Requirements,
     light_at,
 )
@@ -18,6 +19,19 @@ from tests.registry.drawn_questions import drawn_questions
 
 def parse(survey: Facts, **asked: object) -> Requirements:
     return Requirements.parse(asked, survey.taxonomy, survey.properties)
+
+
+def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -> None:
+    for ask in drawn_questions(50, 4, survey):
+        asked = Requirements.parse(ask, survey.taxonomy, survey.properties)
+        mission = MISSIONS.get(ask.get("mission", ""), {})
+        expected = {**mission, **ask}
+        assert asked.to_dict() == {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in expected.items()
+        }
+        assert Requirements.parse(asked.to_dict(), survey.taxonomy, survey.properties) == asked
+        assert set(asked.names) == expected.keys() & {*PARAMETERS, "sun_distance_au"}
 
 
 @pytest.mark.parametrize(

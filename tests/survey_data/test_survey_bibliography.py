@@ -60,6 +60,20 @@ def test_bibtex_is_read_as_printed(copy: Any) -> None:
     )
 
 
+def test_a_comparison_shows_what_differs_and_writes_nothing(copy: Any) -> None:
+    before = copy.path("studies").read_bytes()
+    plan = import_bibliography(offer(copy, BIB), copy.directory)
+    assert copy.path("studies").read_bytes() == before
+    kinds = {(d.study, d.column): d.kind for d in plan.differences}
+    assert kinds["Duan2006", "title"] == kinds["Duan2006", "doi"] == "new"
+    assert kinds["Duan2006", "type"] == "new"
+    assert kinds["Chang2008", "title"] == "conflict"  # a page has confirmed ours
+    assert plan.settled == ("Duan2006", "Fan2017", "Mafi2023")
+    assert [aside.key for aside in plan.left_aside] == ["Knuth1984"]
+    assert len(plan.missing) == 129 - 4
+    assert plan.written == 0
+
+
 def test_applying_completes_identities_once(copy: Any) -> None:
     path = offer(copy, BIB)
     known = len(load(copy.directory).studies.query("identity == 'confirmed'"))
@@ -225,6 +239,12 @@ def test_a_confirmed_identity_is_replaced_only_by_name(copy: Any) -> None:
         import_bibliography(path, copy.directory, replace_studies=["Liebe2002"])
 
 
+def test_an_address_of_a_mirror_is_not_taken(copy: Any) -> None:
+    text = "@misc{Fan2017, title={One}, url={https://www.researchgate.net/p/1}}"
+    plan = import_bibliography(offer(copy, text), copy.directory)
+    assert "url" not in {d.column for d in plan.differences}
+
+
 def test_volume_number_and_pages_follow_the_venue(copy: Any) -> None:
     text = """@article{A2000, title={A}, journal={J}, volume=14, number={2}, pages={120--135}}
         @article{B2000, title={B}, journal={J}, volume=3, issue=1, pages={e7}}
@@ -268,3 +288,13 @@ def test_hostile_bibtex_is_refused_by_one_sentence(copy: Any, text: str, said: s
     with pytest.raises(SurveyImportError, match=said) as refused:
         read_bibliography(offer(copy, text))
     assert "\n" not in str(refused.value)
+
+
+def test_a_field_that_stands_twice_counts_once(copy: Any) -> None:
+    (entry,) = read_bibliography(offer(copy, "@misc{A2000, title={One}, title={Two}, year=2000}"))
+    assert entry.title == "One"
+
+
+def test_a_percent_sign_in_a_field_starts_no_comment(copy: Any) -> None:
+    (entry,) = read_bibliography(offer(copy, "@misc{A2000, title={{S}aves 50% of power}}"))
+    assert entry.title == "Saves 50% of power"

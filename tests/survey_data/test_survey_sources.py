@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from typing import Any
 
 import pytest
 
@@ -82,3 +83,17 @@ def test_notes_keep_where_a_copy_was_read_without_a_scheme_that_programs_would_l
             notes += [row.get("note") or row.get("notes") or "" for row in csv.DictReader(file)]
     assert sum("read in a copy" in note or "record seen at" in note for note in notes) > 150
     assert not [note for note in notes if "://" in note or "www." in note]
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "text"),
+    [
+        ("attributes", "source", "https://pdfslide.net/x"),
+        ("studies", "url", "https://www.scribd.com/doc/1"),
+        ("advice", "survey_section", "sec:nowhere"),
+    ],
+)
+def test_validation_names_the_cell(copy: Any, table: str, column: str, text: str) -> None:
+    copy.set(table, 5, column, text)
+    found = [(p.row, p.column) for p in copy.found(f"{table}.csv")]
+    assert (5, column) in found

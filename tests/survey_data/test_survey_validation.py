@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import survey_data
-from survey_data.descriptor import column_types, file_name, table_names
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
 from survey_data.editions import EXTENSION_TABLES
 
 #: Those of the survey; the tables of those it does not map may be empty (`additions/`).
@@ -26,6 +26,19 @@ def located(problems: list[survey_data.Problem], row: int, column: str | None = 
 
 def test_the_shipped_tables_are_valid() -> None:
     assert survey_data.validate() == []
+
+
+def test_a_plain_copy_is_valid_also_with_windows_line_ends(copy: Any) -> None:
+    for table in ALL:
+        path = copy.path(table)
+        path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    assert survey_data.validate(copy.directory) == []
+    assert len(survey_data.load(copy.directory).studies) == 129
+
+
+def test_a_directory_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(NotADirectoryError, match="nowhere"):
+        survey_data.validate(tmp_path / "nowhere")
 
 
 def line(data: bytes, row: int) -> tuple[list[bytes], int]:
@@ -191,3 +204,15 @@ def test_a_broken_descriptor_is_reported(content: bytes, expected: str, tmp_path
     problems = survey_data.validate(tmp_path)
     assert any(p.file == "datapackage.json" and expected in p.message for p in problems)
     assert len(problems) == 1 + len(table_names())  # there are no tables beside it
+
+
+def test_a_weakened_descriptor_is_reported(tmp_path: Path) -> None:
+    path = tmp_path / "datapackage.json"
+    text = (DATA_DIRECTORY / path.name).read_text(encoding="utf-8")
+    path.write_text(text.replace('"required": true', '"required": 1', 1), encoding="utf-8")
+    found = [p.message for p in survey_data.validate(tmp_path) if p.file == path.name]
+    assert found == ["differs from the descriptor in use"]
+    path.unlink()
+    assert survey_data.Problem(path.name, None, None, "the file is missing") in (
+        survey_data.validate(tmp_path)
+    )

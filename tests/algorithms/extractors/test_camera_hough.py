@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from scipy.optimize import least_squares
 from scipy.special import ndtr
 
 from algorithms.angles import sun_from_angles
+from algorithms.contract import SensorGeometry
 from algorithms.extractors.frames.cameras.blooming_cameras import (
     LineCamera,
     sun_from_blooming_lines,
@@ -202,6 +205,18 @@ def test_parallel_lines_do_not_meet():
     assert np.isnan(sun_from_blooming_lines(lines, twin)).all()
 
 
+def test_wrong_lines_and_cameras_are_named():
+    line = np.ones((3, 5))
+    with pytest.raises(ValueError, match="two cameras"):
+        sun_from_blooming_lines([line], CAMERAS[:1])
+    with pytest.raises(ValueError, match=r"\(3, 5\)"):
+        sun_from_blooming_lines([line, line[:, :4]], CAMERAS[:2])
+    with pytest.raises(ValueError, match="rotation"):
+        LineCamera(1.0, 0.01, (0.0, 0.0), rotation=((1, 0, 0), (0, 1, 0), (0, 0, 2)))
+    with pytest.raises(ValueError, match="focal_length_mm"):
+        LineCamera.for_sensor(SensorGeometry())
+
+
 # Circles
 
 
@@ -273,3 +288,17 @@ def test_bad_frames_have_no_circle():
 
 
 # Both
+
+
+def test_designs_that_do_not_fit_are_refused():
+    hole = SensorGeometry(pixel_pitch_mm=0.01, aperture_width_mm=0.2, aperture_shape="round")
+    assert HoughCircle.for_sensor(hole) == HoughCircle()
+    with pytest.raises(ValueError, match="lens_distortion"):
+        HoughLines.for_sensor(hole)
+    for field, value in (
+        ("aperture_shape", "square"),
+        ("apertures", ((0.0, 0.0, 0.1),)),
+        ("slits", ((0.0, 0.0, 0.1),)),
+    ):
+        with pytest.raises(ValueError, match=field):
+            HoughCircle.for_sensor(replace(hole, **{field: value}))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -172,3 +174,18 @@ def test_events_must_have_three_columns():
     for method in (LINES, EventWinner()):
         with pytest.raises(ValueError, match=r"\(N, M, 3\).*got"):
             method.extract(np.ones((2, 5, 4)))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"slits": ((0.0, 10.0, 0.1),)}, "slant"),
+        ({"slits": ((0.0, 0.0, 0.1), (1.0, 0.0, 0.1))}, "2 slits"),
+        ({"line_axes": ("x",)}, "along"),
+        ({"slits": None}, "neither"),
+    ],
+)
+def test_other_designs_are_refused(change, said):
+    for method in (EventCentroid, EventWinner):
+        with pytest.raises(ValueError, match=said):
+            method.for_sensor(replace(L_SLIT, **change))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +15,14 @@ from algorithms.extractors.profiles.linear_phase import FrameLinearPhase
 from algorithms.extractors.profiles.peak_detection import FramePeak
 from benchmark import datasets
 from benchmark.synthetic_features.frames import REFERENCE_SETS
+
+
+def test_frame_variants_refuse_many_spots(geometry):
+    holes = replace(geometry, apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)))
+    lines = replace(geometry, slits=((0.0, 0.0, 0.1),))
+    for design, method in itertools.product((holes, lines), (FramePeak, FrameLinearPhase)):
+        with pytest.raises(ValueError, match="one spot"):
+            method.for_sensor(design)
 
 
 @settings(deadline=None, derandomize=True, max_examples=50)

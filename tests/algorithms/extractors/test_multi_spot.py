@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from algorithms.contract import FeatureKind
+from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorrelation
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
@@ -253,3 +253,26 @@ def test_tracking_keeps_a_code_that_one_frame_no_longer_tells(which):
 
 
 # Making them
+
+
+@pytest.mark.parametrize("method", [MultipleCentroids, MeanShift, ImageCorrelation])
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"slits": ((0.0, 0.0, 0.1),)}, "slits"),
+        ({"code_bits": 6}, "code_bits"),
+        ({"lens_distortion": (0.0, 0.0)}, "lens_distortion"),
+        ({"aperture_shape": None}, "aperture_shape"),
+        ({"aperture_width_mm": 0.02, "focal_length_mm": 7.0}, "diffraction"),
+        ({"apertures": ((0.0, 0.0, 0.1), (0.01, 0.0, 0.1))}, "tolerance_px"),
+    ],
+)
+def test_designs_without_images_of_apertures_are_refused(method, wrong, reason):
+    design = {
+        "focal_length_mm": 1.0,
+        "pixel_pitch_mm": 0.01,
+        "aperture_width_mm": 0.16,
+        "aperture_shape": "round",
+    }
+    with pytest.raises(ValueError, match=reason):
+        method.for_sensor(SensorGeometry(**(design | wrong)))

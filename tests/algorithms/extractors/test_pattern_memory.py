@@ -6,7 +6,7 @@ import pytest
 from algorithms.extractors.frames.multi_spot import aperture_pattern
 from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorrelation
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
-from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
+from algorithms.extractors.frames.multi_spot.pattern_memory import found_once, shared_patterns
 
 APERTURES = tuple((12.0 * column, 12.0 * row, 4.0) for row in (-1, 0, 1) for column in (-1, 0, 1))
 
@@ -63,3 +63,24 @@ def test_what_can_be_written_to_is_searched_again(searched):
     assert len(searched) == 2
     assert not np.array_equal(before, after)
     assert np.array_equal(after, first.extract(frames(2)))
+
+
+def test_a_view_that_is_locked_of_an_array_that_is_not_is_searched_again(searched):
+    seen = frames(1)
+    view = seen[:]
+    view.flags.writeable = False
+    with shared_patterns():
+        for _ in range(2):
+            methods()[0].extract(view)
+    assert len(searched) == 2
+
+
+def test_another_array_at_the_same_address_is_another():
+    found = []
+    with shared_patterns():
+        for number in range(50):
+            array = np.full((4, 1000), number)  # numpy hands the freed memory out again
+            array.flags.writeable = False
+            found.append(found_once(array, "settings", lambda value=number: value))
+            del array
+    assert found == list(range(50))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import least_squares
 from scipy.special import ndtr
 
+from algorithms.contract import SensorGeometry
 from algorithms.extractors.profiles import peak_fit_kernel
 from algorithms.extractors.profiles.peak_position import (
     SLIT_IMAGE,
@@ -245,3 +246,9 @@ def test_a_frame_without_a_whole_spot_is_not_found_outside_it():
     found = FramePeakPositionEstimate().extract(frames)
     inside = (found >= -0.5) & (found <= [33.5, 29.5])
     assert (inside | np.isnan(found)).all()
+
+
+def test_many_spots_are_refused():
+    holes = SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)))
+    with pytest.raises(ValueError, match="one spot"):
+        FramePeakPositionEstimate.for_sensor(holes)

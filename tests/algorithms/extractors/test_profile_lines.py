@@ -328,6 +328,19 @@ def test_saturated_light_peaks_in_its_middle():
 # Designs
 
 
+def test_designs_that_do_not_give_two_coordinates_are_refused():
+    for design, why in (
+        (replace(PARALLEL, line_axes=("x",)), "two coordinates"),
+        (replace(PARALLEL, line_axes=("x", "x")), "two coordinates"),
+        (replace(PARALLEL, slits=((0.0, 0.0, 0.1), (1.0, 9.0, 0.1), (2.0, 20.0, 0.1))), "slants"),
+        (replace(PARALLEL, line_pixels=None), "line_pixels"),
+        (replace(PARALLEL, slits=None), "slits"),
+    ):
+        for method in (*FINE_PX, ProfileCentroid):
+            with pytest.raises(ValueError, match=why):
+                method.for_sensor(design)
+
+
 def test_windows_hold_a_spots_light_and_not_its_neighbours():
     comb = SlitLines.for_sensor.__func__(PeakDetection, DESIGNS["sixteen slits"])
     assert 2 * comb.half_px <= 0.4 / 0.02

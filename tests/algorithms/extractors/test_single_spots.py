@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import curve_fit
 from scipy.special import ndtr
 
+from algorithms.contract import SensorGeometry
 from algorithms.extractors.frames.balance import DoubleBalance
 from algorithms.extractors.frames.gaussian import GaussianFit
 from algorithms.extractors.frames.template import TemplateMatch
@@ -248,6 +249,11 @@ def test_the_gaussian_fit_inverts_its_model(x, y, s, t):
     frame = 7 + 300 * np.exp(-(((columns - x) / s) ** 2 + ((rows - y) / t) ** 2) / 2)
     # whatever its shape: the narrowest are drawn out five times
     np.testing.assert_allclose(GaussianFit(light="any").extract(frame[None]), [[x, y]], atol=1e-6)
+
+
+def test_a_mask_of_several_apertures_is_refused():
+    with pytest.raises(ValueError, match="apertures"):
+        GaussianFit.for_sensor(SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1))))
 
 
 # All

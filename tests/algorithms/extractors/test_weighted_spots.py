@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
+from algorithms.contract import SensorGeometry
 from algorithms.extractors.frames.multi_spot import spot_pixels_kernel
+from algorithms.extractors.frames.multi_spot.combination_kernel import combine
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
 
@@ -119,6 +121,27 @@ def test_a_background_that_slopes_does_not_move_the_spots():
     slope = 2.0 * np.arange(frames.shape[2])
     flat = error(WeightedSpots, apertures, noisy(frames + slope.mean(), rng), places)
     assert error(WeightedSpots, apertures, noisy(frames + slope, rng), places) < 1.2 * flat
+
+
+def combined(away, variances, misfits=None):
+    apertures = np.zeros((len(away), 3))
+    centres = np.column_stack([away, away])[None]
+    misfits = np.ones(len(away)) if misfits is None else misfits
+    found, sure = np.empty((1, 2)), np.empty((1, 2))
+    used = np.empty((1, len(away)), dtype=np.bool_)
+    combine(centres, variances[None], misfits[None], apertures, found, sure, used)
+    return found[0, 0], sure[0, 0], used[0]
+
+
+def test_designs_without_images_of_apertures_are_refused():
+    design = SensorGeometry(
+        focal_length_mm=7.0,
+        pixel_pitch_mm=0.01,
+        aperture_width_mm=0.02,
+        aperture_shape="round",
+    )
+    with pytest.raises(ValueError, match="diffraction"):
+        WeightedSpots.for_sensor(design)
 
 
 def strangers(rng, apertures, frames, places):

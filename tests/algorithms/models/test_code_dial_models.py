@@ -11,10 +11,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms.angles import separation_deg, sun_from_angles, sun_from_tangents
+from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.models.multiplex.periodic import PeriodicCode
 from algorithms.models.non_physical.fourier_phase import FourierPhase
 
 BITS, CELL_MM, PERIOD_MM, FOCAL_MM = 5, 0.32, 0.64, 2.5
+DESIGN = SensorGeometry(
+    focal_length_mm=FOCAL_MM,
+    code_bits=BITS,
+    code_cell_mm=CELL_MM,
+    fine_period_mm=PERIOD_MM,
+    line_axes=("x", "y"),
+)
 MODELS = [PeriodicCode, FourierPhase]
 
 
@@ -213,6 +221,21 @@ def test_phase_errors_of_any_harmonic_are_in_the_series():
     np.testing.assert_allclose(model.conversion_, np.eye(3), atol=1e-9)
     short = fitted(FourierPhase, tangents, dials(read), harmonics=3)
     assert separation_deg(short.predict(dials(read)), sun_of(tangents)).max() > 0.05
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_samples_that_do_not_settle_the_fit_are_refused(model):
+    one_place = np.tile(field_tangents(count=1), (200, 1))
+    one_dial = np.column_stack([field_tangents()[:, 0], np.full(400, 0.3)])
+    for tangents in (one_place, one_dial):
+        with pytest.raises(ValueError, match="do not settle"):
+            fitted(model, tangents)
+    with pytest.raises(ValueError, match="3 samples give 6 angles"):
+        fitted(model, field_tangents(count=3))
+    tangents = field_tangents()
+    signals = dials(tangents)
+    with pytest.raises(ValueError, match="in front"):
+        model.for_sensor(DESIGN, FeatureKind.SIGNALS).fit(signals, -sun_of(tangents))
 
 
 # The extractor

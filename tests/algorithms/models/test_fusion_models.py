@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms.angles import separation_deg
+from algorithms.contract import FeatureKind, SensorGeometry
 from algorithms.models.geometric.panoramic import WeightedCells
 from algorithms.models.geometric.pyramidal import RegularPyramid
 from algorithms.models.geometric.solar_panel import SolarPanels
@@ -127,6 +128,26 @@ def test_a_coefficient_a_face_makes_up_for_gains_one_in_common_does_not():
     assert np.nanmax(separation_deg(common.predict(signals), sun)) > 5
 
 
+@pytest.mark.parametrize(
+    "normals",
+    [
+        FACES,
+        survey_pyramid(6, 30.0)[:5],  # a face missing
+        survey_pyramid(4, 90.0),  # a prism
+        -survey_pyramid(4, 30.0),
+        survey_pyramid(4, 30.0) * 1.1,
+        survey_pyramid(3, 30.0)[:2],
+        np.vstack([survey_pyramid(3, 30.0), survey_pyramid(3, 40.0, 60.0)]),
+        (),
+    ],
+)
+def test_pyramid_refuses_faces_of_another_body(normals):
+    with pytest.raises(ValueError, match="pyramidal needs"):
+        RegularPyramid.for_sensor(
+            SensorGeometry(face_normals=as_design(normals)), FeatureKind.SIGNALS
+        )
+
+
 # Panoramic
 
 
@@ -205,6 +226,26 @@ def test_lit_cells_in_a_plane_give_nothing_however_they_round(seed):
     assert np.isnan(model.predict(cosines(sun[None], normals))).all()
     two = np.array([[0.0, 0.8, 0.0, 0.0, 0.5]])
     assert np.isnan(model.predict(two)).all()
+
+
+@pytest.mark.parametrize(
+    ("normals", "half_fov_deg", "fewest"),
+    [
+        (FACES, None, 1),  # the Sun on an axis
+        (survey_pyramid(4, 30.0), 55.0, 2),  # between two faces, far out
+        (survey_pyramid(6, 30.0), None, 0),
+        (survey_pyramid(4, 30.0), 30.0, None),
+        (survey_pyramid(6, 30.0), 55.0, None),
+    ],
+)
+def test_panoramic_refuses_bodies_that_leave_directions_unsolved(normals, half_fov_deg, fewest):
+    design = SensorGeometry(face_normals=as_design(normals), half_fov_deg=half_fov_deg)
+    if fewest is None:
+        model = WeightedCells.for_sensor(design, FeatureKind.SIGNALS)
+        assert model.face_normals == design.face_normals
+    else:
+        with pytest.raises(ValueError, match=f"faces leave {fewest}"):
+            WeightedCells.for_sensor(design, FeatureKind.SIGNALS)
 
 
 def anywhere(normals):

@@ -275,6 +275,36 @@ def test_poses_that_do_not_settle_a_sensor_are_refused(name):
             model.fit(spots[rows], sun[rows])
 
 
+@pytest.mark.parametrize(
+    ("kind", "axes", "slits"),
+    [
+        (DeflectedSlits, ("y",), V),
+        (DeflectedSlits, ("x", "x"), ((0.0, 0.0, 0.1),)),
+        (DeflectedSlits, ("x", "y"), ((0.0, 5.0, 0.1),)),
+        (MultiSlit, ("x", "y"), ((0.0, 0.0, 0.1),)),
+        (MultiSlit, ("y",), V),
+        (MultiSlit, ("x", "y"), (*V, *V)),  # four shifts are not a spot
+        (VSlit, ("x", "y"), ((0.0, 0.0, 0.1),)),
+        (VSlit, ("y",), N),
+        (VSlit, ("y",), ((-1.0, -45.0, 0.1), (1.0, 45.0, 0.1))),
+        (NSlit, ("y",), V),
+        (NSlit, ("y",), ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, -45.0, 0.1))),
+        (NSlit, ("y",), ((-3.0, 0.0, 0.1), (0.0, 0.0, 0.1), (3.0, 5e-7, 0.1))),
+        (NSlit, ("y",), ()),
+    ],
+)
+def test_other_architectures_are_refused(kind, axes, slits):
+    geometry = SensorGeometry(
+        focal_length_mm=1.8,
+        pixel_pitch_mm=PITCH,
+        centre_px=(MIDDLE, MIDDLE),
+        line_axes=axes,
+        slits=slits,
+    )
+    with pytest.raises(ValueError, match=f"{kind.about.name} needs"):
+        kind.for_sensor(geometry, FeatureKind.SPOT)
+
+
 @pytest.mark.parametrize("wrong", [0.0, -0.5])
 def test_pairs_refuse_a_height_that_cannot_be_and_say_which(wrong):
     geometry = SensorGeometry(

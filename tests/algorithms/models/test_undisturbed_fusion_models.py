@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from algorithms.angles import separation_deg
+from algorithms.contract import FeatureKind, SensorGeometry, UnusableDataError
 from algorithms.models.geometric.panoramic import WeightedCells
 from algorithms.models.geometric.panoramic_temperature import WarmCells
 from algorithms.models.geometric.pyramidal import RegularPyramid
 from algorithms.models.geometric.pyramidal_constant import SteadyPyramid
 
+FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 T_0 = 298.15
 
 
@@ -101,6 +103,22 @@ def test_one_sun_off_the_boresight_that_lights_all_faces_is_enough():
     model = SteadyPyramid(as_design(normals), extrapolation=math.inf)
     model.fit(1.7 * lit(sun, normals), sun)
     assert model.coefficient_ == pytest.approx(1 / 1.7)
+
+
+def test_pyramids_that_nothing_is_learnt_of_are_refused():
+    normals = pyramid(4, 30.0)
+    model = SteadyPyramid(as_design(normals), extrapolation=math.inf)
+    axis, low = np.array([[0.0, 0.0, 1.0]]), rings(75)
+    for sun in (axis, low):
+        with pytest.raises(UnusableDataError, match="pyramidal-constant"):
+            model.fit(lit(sun, normals), sun)
+    with pytest.raises(UnusableDataError, match="lean towards"):
+        model.fit(lit(rings(20), normals), rings(20) * [-1, -1, 1])
+    for wrong in (FACES, pyramid(6, 30.0)[:5], ()):
+        with pytest.raises(ValueError, match="pyramidal-constant"):
+            SteadyPyramid.for_sensor(
+                SensorGeometry(face_normals=as_design(wrong)), FeatureKind.SIGNALS
+            )
 
 
 # Cells that warm up
@@ -193,3 +211,17 @@ def test_intervals_of_the_coefficient_hold_the_truth_as_often_as_they_say():
         low, high = model.fitted_parameters()[0].interval()
         held.append(low <= 0.0045 <= high)
     assert 0.93 <= np.mean(held) <= 0.97
+
+
+def test_a_temperature_that_is_not_known_or_does_not_change():
+    normals, sun = lattice(16), rings(*range(5, 180, 20))
+    temperature = np.random.default_rng(3).uniform(260, 340, len(sun))
+    signals, context = warmed(sun, normals, temperature, 0.0045), {"temperature_K": temperature}
+    model = WarmCells(as_design(normals)).fit(signals, sun, context)
+    found = model.predict(signals[:3], {"temperature_K": [temperature[0], np.nan, 9000.0]})
+    assert np.isnan(found).all(axis=1).tolist() == [False, True, True]
+    steady = {"temperature_K": np.full(len(sun), 300.0)}
+    with pytest.raises(UnusableDataError, match="different temperatures"):
+        model.fit(signals, sun, steady)
+    with pytest.raises(UnusableDataError, match="panoramic-temperature needs"):
+        model.fit(signals, sun, {"temperature_K": np.full(len(sun), np.nan)})

@@ -57,6 +57,24 @@ def test_numbers_of_a_correction_that_are_none_are_named(
         load(file)
 
 
+@pytest.mark.parametrize(
+    ("fit", "said"),
+    [
+        ({"interval_factor": True}, "fit.interval_factor must be one finite number"),
+        ({"interval_factor": 0.0}, "fit.interval_factor must be one finite number above 0"),
+        ({"temperature_K": [300.0]}, "fit.temperature_K must be 2 finite"),
+        ({"temperature_K": [300.0, 200.0]}, "fit.temperature_K must rise; got 300, 200"),
+        ({"rms_left_out_deg": "small"}, "fit.rms_left_out_deg must be one finite number"),
+    ],
+)
+def test_numbers_of_the_fit_that_are_none_are_named(
+    held: dict[str, Any], tmp_path: Path, fit: dict[str, Any], said: str
+) -> None:
+    file = forged(held, tmp_path / "a.json", {"fit": {**held["fit"], **fit}})
+    with pytest.raises(UnreadableCalibrationError, match=rf"^a\.json: {said}"):
+        load(file)
+
+
 @pytest.mark.parametrize("part", ["fit", "settings", "model", "compensations"])
 @pytest.mark.parametrize("value", [None, [], {"name": "homography"}])
 def test_a_part_that_is_something_else_is_refused(

@@ -11,7 +11,7 @@ import pytest
 import survey_data
 from files import manifest
 from survey_data import facts_manifest
-from survey_data.additions.offered import parse_toml, read_addition
+from survey_data.additions.offered import FaultsError, parse_toml, read_addition
 from survey_data.additions.template import empty_template
 from survey_data.additions.writing import (
     UnknownStudyError,
@@ -119,6 +119,20 @@ def test_a_damaged_template_is_refused_by_line(right: str, wrong: str, at: str, 
     ), faults
 
 
+def test_every_fault_is_listed_in_the_order_of_lines(recorded: Path) -> None:
+    text = STUDY.replace('"CMOS"', '"CMOSS"').replace('"thesis"', '"theses"').replace("0.005", "-1")
+    path = offered(recorded, text)
+    before = content(recorded)
+    with pytest.raises(FaultsError) as error:
+        read_study(path, recorded)
+    lines = str(error.value).splitlines()
+    assert [re.findall(r"line (\d+)", each) for each in lines] == [
+        [str(line_of(text, words))] for words in ('"theses"', '"CMOSS"', "-1")
+    ]
+    assert all(each.startswith(f"{path.name}, line ") for each in lines)
+    assert content(recorded) == before
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [
@@ -132,6 +146,15 @@ def test_a_damaged_template_is_refused_by_line(right: str, wrong: str, at: str, 
 def test_what_is_no_toml_is_refused(text: str, line: int | None) -> None:
     (fault,) = refused(text)
     assert line is None or fault[0] == line
+
+
+def test_values_and_evidence_of_one_cell_are_held_together() -> None:
+    twice = STUDY + '\n[[detector]]\nvalue = "CMOS"\nbasis = "title"\n'
+    assert "stands already in line 19" in refused(twice)[0][1]
+    beside = STUDY + '\n[[detector]]\nbasis = "unknown"\n'
+    assert "unknown beside a value" in refused(beside)[0][1]
+    single = STUDY + '\n[[accuracy_deg]]\nvalue = 1\nbasis = "title"\n'
+    assert "which admits one" in refused(single)[0][1]
 
 
 def test_sensors_of_a_study_use_each_of_its_values(recorded: Path) -> None:

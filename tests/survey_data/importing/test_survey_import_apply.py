@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from survey_data import SurveyImportError, import_table, load, validate
+from survey_data.importing.writing import locked_tables
 
 
 def offer(copy: Any, text: str) -> Path:
@@ -95,6 +97,39 @@ def test_the_survey_s_printed_cells_are_never_overwritten(copy: Any) -> None:
     assert [row for row in copy.rows("attributes") if row[3] == "survey-table"] == before
 
 
+def test_only_the_cells_taken_over_change(copy: Any) -> None:
+    before = copy.rows("attributes")
+    plan = import_table(offer(copy, THEIRS), copy.directory, apply=True)
+    touched = {(edit.study, edit.attribute) for edit in plan.edits}
+    rest = [row for row in copy.rows("attributes") if (row[0], row[1]) not in touched]
+    assert rest == [row for row in before if (row[0], row[1]) not in touched]
+    others = {path for path in copy.directory.iterdir() if path.is_file()}
+    assert {path.name for path in others if path.suffix not in {".csv", ".json"}} == {"theirs.txt"}
+
+
+def test_who_imports_while_another_writes_waits_and_keeps_what_that_one_wrote(copy: Any) -> None:
+    path = offer(copy, "Key,Error\nAlvi2014,Alignment\n")
+    applied = threading.Event()
+
+    def other() -> None:
+        assert import_table(path, copy.directory, apply=True).written == 1
+        applied.set()
+
+    waiting = threading.Thread(target=other)
+    with locked_tables(copy.directory):
+        waiting.start()
+        assert not applied.wait(0.5)
+        rows = copy.rows("attributes")
+        mask = next(row for row in rows if row[:2] == ["Alvi2014", "mask"])
+        mask[5] = "written meanwhile"
+        copy.write("attributes", rows)
+    waiting.join(60)
+    assert applied.is_set()
+    assert cell(copy, "Alvi2014", "mask")[0][5] == "written meanwhile"
+    assert cell(copy, "Alvi2014", "error")[0][2] == "Alignment"
+    assert not list(copy.directory.glob(".*")), "the lock went with its holder"
+
+
 def test_applying_twice_changes_nothing_the_second_time(copy: Any) -> None:
     path = offer(copy, THEIRS)
     import_table(path, copy.directory, apply=True)
@@ -104,6 +139,14 @@ def test_applying_twice_changes_nothing_the_second_time(copy: Any) -> None:
     assert [entry.kind for entry in again.differences] == ["conflict"]
     assert again.confirmed == ()
     assert copy.path("attributes").read_bytes() == once
+
+
+@pytest.mark.slow
+def test_a_newer_authors_table_replaces_an_older_one(copy: Any) -> None:
+    import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory, apply=True)
+    import_table(offer(copy, "Key,Mask\nAlvi2014,V-Slit\n"), copy.directory, apply=True)
+    (mask,) = cell(copy, "Alvi2014", "mask")
+    assert mask[2:4] == ["V-Slit", "authors-table"]
 
 
 def test_our_own_table_brings_no_difference(copy: Any) -> None:
@@ -139,6 +182,11 @@ def test_an_unreadable_cell_stops_everything(
     assert copy.path("attributes").read_bytes() == before
 
 
+def test_a_table_about_other_studies_is_refused(copy: Any) -> None:
+    with pytest.raises(SurveyImportError, match=r"our.*2"):
+        import_table(offer(copy, "Key,Mask\nNobody1999,Slit\n"), copy.directory)
+
+
 @pytest.mark.slow
 def test_an_import_into_invalid_tables_is_refused(copy: Any) -> None:
     copy.set("studies", 2, "doi", "no doi")
@@ -146,6 +194,20 @@ def test_an_import_into_invalid_tables_is_refused(copy: Any) -> None:
     with pytest.raises(SurveyImportError, match=r"studies.csv.*2.*doi"):
         import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory, apply=True)
     assert copy.path("attributes").read_bytes() == before
+
+
+def test_a_failing_write_leaves_the_old_file(copy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(self: Path, target: Path) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    path = offer(copy, "Key,Mask\nAlvi2014,Lens\n")
+    before = {entry.name for entry in copy.directory.iterdir()}
+    old = copy.path("attributes").read_bytes()
+    monkeypatch.setattr(Path, "replace", refuse)
+    with pytest.raises(SurveyImportError, match="cannot write"):
+        import_table(path, copy.directory, apply=True)
+    assert copy.path("attributes").read_bytes() == old
+    assert {entry.name for entry in copy.directory.iterdir()} == before
 
 
 def test_angles_that_differ_by_rounding_are_the_same(copy: Any) -> None:

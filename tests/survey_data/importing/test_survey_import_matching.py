@@ -86,28 +86,40 @@ def test_an_impossible_mapping_is_refused(
     [
         ("mask", "Slit", ["Slit"]),
         ("mask", "pinhole", ["Single-Ap."]),
+        ("mask", "Single aperture", ["Single-Ap."]),
         ("mask", "Multiple slits", ["Multi-Slit"]),
         ("detector", "CMOS APS", ["CMOS"]),
         ("detector", "CMOS / Event", ["CMOS", "Event"]),
         ("detector", "PD and QPD", ["PD", "QPD"]),
+        ("detector", "Photodiodes", ["PD"]),
         ("model", "ECM/Noise", ["ECM/Noise"]),
+        ("model", "SECM/Solar, ICM/Shadow", ["SECM/Solar", "ICM/Shadow"]),
         ("model", "LUT/Polynomial", ["LUT", "Polynomial"]),
         ("model", "Polynomials; LUT\nLUT", ["Polynomial", "LUT"]),
         ("model", "Code", ["Coded"]),
+        ("model", "ECM", ["ECM"]),
         ("model", "None", ["None"]),
         ("task", "None", []),
+        ("task", "n/a", []),
         ("task", "-", []),
+        ("task", "?", []),
+        ("task", "Unknown", []),
         ("extractor", "Voltage-Balance", ["Voltage balance"]),
+        ("extractor", "MT ACM", ["MT-ACM"]),
+        ("extractor", "Linear phase", ["Linear-phase"]),
         ("accuracy", "Fine", ["FSS"]),
+        ("accuracy", "Very fine", ["VFSS"]),
         ("accuracy", "Fine sun sensor (better than 0.5 deg, down to about one arcminute)", ["FSS"]),
         ("accuracy", "0.1°", ["FSS"]),
         ("accuracy", "5 arcsec", ["UFSS"]),
         ("accuracy_deg", "0.05", ["0.05"]),
         ("accuracy_deg", "0,05", ["0.05"]),
         ("accuracy_deg", "~ 0.1 deg", ["0.1"]),
+        ("accuracy_deg", "±0.1°", ["0.1"]),
         ("accuracy_deg", "3 arcmin", ["0.05"]),
         ("accuracy_deg", "36″", ["0.01"]),
         ("fov_deg", "±60°", ["120"]),
+        ("fov_deg", "+/- 64", ["128"]),
         ("fov_deg", "120 x 120 deg", ["120"]),
     ],
 )
@@ -123,6 +135,7 @@ def test_values_are_read(
         ("mask", "Sundial", "no value of mask"),
         ("error", "Manufacturng", "the nearest is 'Manufacturing'"),
         ("extractor", "BCXM", "no value"),  # one letter from BCTM and no guess
+        ("extractor", "BCTM, Sundial", "'Sundial'"),
         ("detector", "CMOS/Sundial", "'Sundial'"),
         ("model", "SECM", "may stand for SECM/Solar or SECM/Temperature"),
         ("accuracy_deg", "fine", "expected an angle"),
@@ -201,6 +214,16 @@ def test_every_titled_study_is_found_by_its_title_alone(tables: survey_data.Surv
     shared = titles["title"].duplicated(keep=False)
     for key, title in zip(titles.loc[~shared, "key"], titles.loc[~shared, "title"], strict=True):
         assert finder.find(title=title.upper()) == key
+
+
+def test_a_column_called_as_ours_is_taken_though_some_cells_cannot_be_read(
+    tables: survey_data.SurveyTables,
+) -> None:
+    given = frame(Key=["Chang2008", "He2005", "Xie2008"], Mask=["Slit", "Sundial", "Gnomon"])
+    assert targets_of(match_columns(tables, given))["Mask"] == "mask"
+    given["Mask"] = ["12", "14", "16"]  # something else altogether
+    with pytest.raises(SurveyImportError, match="no column holds an attribute"):
+        match_columns(tables, given)
 
 
 @pytest.mark.parametrize(

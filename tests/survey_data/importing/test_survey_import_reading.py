@@ -65,6 +65,12 @@ def test_a_workbook_is_read_as_text_from_its_first_filled_sheet(tmp_path: Path) 
         read_table(path, sheet="Data")
 
 
+def test_rows_are_numbered_as_lines_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "theirs.csv"
+    path.write_text('Key,Mask\nA2001,"Slit\nLens"\n\nB2002,Slit\n', encoding="utf-8")
+    assert read_table(path).index.tolist() == [2, 5]
+
+
 @pytest.mark.parametrize(
     ("name", "content", "place", "expected"),
     [
@@ -96,3 +102,17 @@ def test_what_is_no_table_is_refused_with_its_place(
     with pytest.raises(SurveyImportError, match=expected) as caught:
         read_table(path)
     assert (caught.value.row, caught.value.column) == place
+
+
+def test_a_file_that_is_not_there_or_a_directory_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SurveyImportError, match="cannot read"):
+        read_table(tmp_path / "nothing.csv")
+    with pytest.raises(SurveyImportError, match="cannot read"):
+        read_table(tmp_path)
+
+
+def test_a_sheet_of_a_csv_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "theirs.csv"
+    path.write_text(text(","), encoding="utf-8")
+    with pytest.raises(SurveyImportError, match="no workbook"):
+        read_table(path, sheet="Sheet")

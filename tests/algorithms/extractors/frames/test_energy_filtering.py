@@ -142,3 +142,10 @@ def test_noise_two_spots_a_hot_pixel_and_a_cut_spot_are_not_found():
     cut = frames_of([[0.0, 20.0]], 3)
     for frame in (hot, two, cut):
         assert np.isnan(FILTER.extract(frame)).all()
+
+
+def test_many_spots_are_refused():
+    with pytest.raises(ValueError, match="apertures"):
+        AdaptiveEnergyFilter.for_sensor(
+            SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1)))
+        )
