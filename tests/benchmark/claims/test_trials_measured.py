@@ -12,8 +12,18 @@ from benchmark.claims.outcomes import outcome_of, read_outcomes
 from benchmark.claims.rules import FIRST_TRIAL, claims
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(find_experiments()))
+#: Of which one trial takes below a second.
+QUICK = {
+    "C04", "C05", "C06", "C12", "C15", "C17", "C18", "C19", "C20", "C21", "C22", "C23", "C27",
+    "C32", "C36", "C37", "C38", "C40", "C41", "C42", "C47", "C49", "C50", "C51", "C53",
+}  # fmt: skip
+BY_COST = [
+    name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
+    for name in sorted(find_experiments())
+]
+
+
+@pytest.mark.parametrize("name", BY_COST)
 def test_the_first_trial_of_a_claim_measures_what_is_published(name: str) -> None:
     """But for run times, and for last digits that another processor may change."""
     claim, published = replace(claims()[name], trials=1), read_outcomes()[name]
