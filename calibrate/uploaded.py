@@ -45,7 +45,7 @@ _TASK, _SAID = "task.json", "said.json"
 #: The process takes the processor when no answer wants it, from before it loads anything.
 _BEGIN = """
 import contextlib, os, runpy
-os.nice(19)
+os.setpriority(os.PRIO_PROCESS, 0, 19)
 with contextlib.suppress(AttributeError, OSError):  # not on every system
     os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
 runpy.run_module("calibrate.uploaded", run_name="__main__", alter_sys=True)

@@ -85,6 +85,7 @@ def tests_of(module: str) -> list[Path]:
     # which import what they discover
     if module.startswith("algorithms/"):
         beside.append(ROOT / "tests/algorithms/test_common_suite.py")
+        beside.append(ROOT / "tests/benchmark/running/test_published_cells.py")
     if module.startswith(("benchmark/simulator/", "benchmark/datasets/")):
         beside.append(ROOT / "tests/benchmark/datasets/test_published_heads.py")
     return list(dict.fromkeys(found + beside))

@@ -26,6 +26,8 @@ _PASSES, _STEPS = 4, 2
 _WEIGHINGS = 4
 #: Variance (squared share of one Sun) below which no noise of a reading is taken to be.
 _LEAST = 1e-12
+#: Lower quartile of the square of a normal variable of variance one.
+_QUARTILE = 0.1015
 #: Prior information on each component of the sunlight, so that two lit faces do not leave one free.
 _SMALL = 1e-3
 
@@ -119,6 +121,11 @@ class EstimatedEarth(ComputedEarth):
         by = [parts @ one @ np.swapaxes(parts, 1, 2) for one in fields]
         by += [((slope[:, :, None] > 0) == lit) * np.eye(len(normals)) for lit in (False, True)]
         terms, products = np.stack(by, axis=-1), left[:, :, None] * left[:, None, :]
+        # a first regression may leave no noise; its weights would count nothing but dark readings
+        quiet = np.full(left.shape, _LEAST)
+        for seen in (slope > 0, slope <= 0):
+            if seen.any():
+                quiet[seen] += np.quantile(left[seen] ** 2, 0.25) / _QUARTILE
         deviation, found = np.ones(left.shape), np.zeros(len(by))
         for _ in range(_WEIGHINGS):
             weight = 1.0 / (deviation[:, :, None] * deviation[:, None, :])
@@ -126,7 +133,7 @@ class EstimatedEarth(ComputedEarth):
             scale = np.where(matrix.any(axis=0), np.abs(matrix).max(axis=0), 1.0)
             found = nnls(matrix / scale, (products * weight).ravel())[0] / scale
             variance = np.einsum("nkkm,m->nk", terms, found)
-            deviation = np.sqrt(np.maximum(variance, _LEAST))
+            deviation = np.sqrt(np.maximum(variance, quiet))
         self.spread_ = np.sqrt(found[:-2])
         self.noise_ = np.sqrt(np.maximum(found[-2:], _LEAST))
         values, modes = np.linalg.eigh(np.tensordot(found[:-2], fields, axes=1))
