@@ -11,7 +11,6 @@ from benchmark.claims.experiment import find_experiments
 from benchmark.claims.outcomes import outcome_of, read_outcomes
 from benchmark.claims.rules import FIRST_TRIAL, claims
 
-
 #: Of which one trial takes below a second.
 QUICK = {
     "C04", "C05", "C06", "C12", "C15", "C17", "C18", "C19", "C20", "C21", "C22", "C23", "C27",
