@@ -108,6 +108,7 @@ def test_a_claim_of_words_has_its_medians_and_spreads_beside_each_other():
     outcome = ClaimOutcome("c1", {}, {}, lines)
     (axes,) = claim_plots.figure(Said, outcome, Sketch()).axes
     assert [label.get_text() for label in axes.get_xticklabels()] == ["a", "b", "c"]
+    assert axes.get_xlim() == (-0.5, 2.5)
     for number, (name, line) in enumerate(lines.items()):
         bars = axes.containers[number]
         assert bars.get_label() == name

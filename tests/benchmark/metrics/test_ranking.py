@@ -61,8 +61,9 @@ def test_what_is_not_distinguished_is_listed_by_own_error():
 
 
 def test_what_was_scored_on_one_unit_is_behind_all_groups():
-    places, _ = board(a=units(1.0, 0.02, 1), lucky=[0.5], b=units(1.3, 0.02, 2))
-    assert (places["a"].rank, places["b"].rank, places["lucky"].rank) == (1, 2, 3)
+    groups = {"a": units(1.0, 0.02, 1), "b": units(1.3, 0.02, 2), "c": units(1.7, 0.02, 3)}
+    places, _ = board(lucky=[0.5], **groups)
+    assert [places[name].rank for name in ("a", "b", "c", "lucky")] == [1, 2, 3, 4]
     assert places["lucky"].group is None
 
 
