@@ -87,13 +87,9 @@ def every_store(directory: Path | None) -> tuple[Store, Store, Store]:
 class ScoredCells:
     """Rows of cells and where they came from.
 
-    Attributes
-    ----------
-    rows : score rows in the order of the cells, with latency_us and time_ratio as published
-    published_count, stored_count, measured_count : numbers of scores read from the published
-        results, read from the working store, and measured now
-    directory : the working store
-    warnings : of the runner
+    `rows`: score rows in the order of the cells, with latency_us and time_ratio as published.
+    `published_count`, `stored_count`, `measured_count`: numbers of scores read from the published
+    results, read from the working store, and measured now.
     """
 
     rows: list[Row]
@@ -118,12 +114,8 @@ def score_cells(
 ) -> ScoredCells:
     """Read what is known of the cells and measure the rest.
 
-    Raises
-    ------
-    typer.Exit
-        With 130 on Ctrl-C, after saying what is kept.
-    StoreLockedError, StoreError, DaskMissingError, ClusterError, WorkerLostError
-        As `benchmark.running.runner.run`.
+    typer.Exit with 130 on Ctrl-C, after saying what is kept. StoreLockedError, StoreError,
+    DaskMissingError, ClusterError, WorkerLostError as `benchmark.running.runner.run`.
     """
     from benchmark.plan.parts import every_part  # noqa: PLC0415 - slow
     from benchmark.running.runner import run, stale  # noqa: PLC0415 - slow

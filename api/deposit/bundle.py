@@ -58,10 +58,7 @@ class DepositError(ValueError):
 class Bundle:
     """What was built.
 
-    Attributes
-    ----------
-    directory, archive : the bundle, and its zip
-    files : paths in the bundle, sorted
+    `directory`, `archive`: the bundle, and its zip. `files`: paths in the bundle, sorted.
     """
 
     directory: Path
@@ -93,6 +90,11 @@ def build(
 ) -> Bundle:
     """Build the bundle at `out` and its zip at `out`.zip, both or neither.
 
+    DepositError where `out` holds anything but an earlier bundle, or the survey's tables have
+    problems. CodeArchiveError where there is no code to put in. FileNotFoundError where there are
+    no published results, or a licence is missing. ValueError where a table cannot be read or has a
+    column nothing is known of.
+
     Parameters
     ----------
     out : the directory to make; one that holds an earlier bundle is replaced
@@ -101,17 +103,6 @@ def build(
     frames : data sets of which samples go along; all by default
     code : source distribution that goes along; made of this checkout by default
     progress : called as ``progress(done, total, what)`` in data sets, then tables and zip
-
-    Raises
-    ------
-    DepositError
-        Where `out` holds anything but an earlier bundle, or the survey's tables have problems.
-    CodeArchiveError
-        Where there is no code to put in.
-    FileNotFoundError
-        Where there are no published results, or a licence is missing.
-    ValueError
-        Where a table cannot be read or has a column nothing is known of.
     """
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
     require_replaceable(out)
@@ -153,13 +144,8 @@ def fill(
 ) -> None:
     """Write all of a bundle beside the samples and the code that lie in it.
 
-    Parameters
-    ----------
-    bundle : its directory
-    who : name, version and terms
-    sources : what it is made of
-    exported : of each file of samples what `frames.write_frames` says
-    other_forms : writes the tables in other forms than CSV
+    `exported`: of each file of samples what `frames.write_frames` says. `other_forms`: writes the
+    tables in other forms than CSV.
     """
     described = read_descriptor(sources.survey / DESCRIPTOR)
     for resource in described["resources"]:

@@ -27,15 +27,9 @@ class CodeArchiveError(ValueError):
 def write_code(bundle: Path, archive: Path | None = None) -> None:
     """Write the archive of the code to code/, and the script beside the README.
 
-    Parameters
-    ----------
-    bundle : its directory
-    archive : source distribution to take; made of this checkout by default
+    `archive`: source distribution to take; made of this checkout by default.
 
-    Raises
-    ------
-    CodeArchiveError
-        Where the archive is none, this is no checkout or the build backend fails.
+    CodeArchiveError where the archive is none, this is no checkout or the build backend fails.
     """
     folder = bundle / FOLDER
     folder.mkdir()

@@ -36,10 +36,7 @@ class CellError(ValueError):
 def typed_table(bundle: Path, resource: Mapping[str, Any]) -> pa.Table:
     """Read a table of a bundle with types and meanings of its columns, null where a cell is empty.
 
-    Raises
-    ------
-    CellError
-        Where columns are others than the descriptor's, or a cell is not of its column's type.
+    CellError where columns are others than the descriptor's, or a cell is not of its column's type.
     """
     path = bundle / resource["path"]
     fields = [
@@ -75,10 +72,8 @@ def typed_table(bundle: Path, resource: Mapping[str, Any]) -> pa.Table:
 def write_other_forms(bundle: Path, descriptor: Mapping[str, Any], out: Path | None = None) -> None:
     """Write the tables of a bundle as Parquet and SQLite, too; into `out`, the bundle by default.
 
-    Raises
-    ------
-    CellError, ValueError, sqlite3.Error
-        Where the tables are not what the descriptor says, or their keys do not hold.
+    CellError, ValueError, sqlite3.Error where the tables are not what the descriptor says, or their
+    keys do not hold.
     """
     resources = [one for one in descriptor["resources"] if one.get("type") == "table"]
     tables = [(resource, typed_table(bundle, resource)) for resource in resources]

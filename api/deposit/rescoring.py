@@ -48,7 +48,6 @@ class Rescored:
 
     Attributes
     ----------
-    cell : what was measured
     stated : columns of the bundle's table, as text
     found : the same, measured from its samples
     seconds : since the cell before
@@ -83,11 +82,7 @@ def repeatable(
 
     Not those without a number, of models that refuse their calibration.
 
-    Parameters
-    ----------
-    bundle : its directory
-    scores : its rows by cell
-    parts : data sets and implementations; those installed by default
+    `scores`: its rows by cell. `parts`: data sets and implementations; those installed by default.
     """
     known, whole = parts or installed_parts(), _whole(bundle)
     return [
@@ -103,10 +98,7 @@ def repeatable(
 def draw(cells: Sequence[Cell], count: int, seed: int) -> list[Cell]:
     """Return cells drawn at random, sorted; each cell's lot is a digest of the seed and the cell.
 
-    Raises
-    ------
-    RescoringError
-        For a count below 1 or above the number of cells.
+    RescoringError for a count below 1 or above the number of cells.
     """
     if not 1 <= count <= len(cells):
         raise RescoringError(
@@ -122,16 +114,10 @@ def draw(cells: Sequence[Cell], count: int, seed: int) -> list[Cell]:
 def rescore(bundle: Path, cells: Sequence[Cell], parts: Parts | None = None) -> Iterator[Rescored]:
     """Measure cells again from a bundle's samples; nothing is simulated.
 
-    Parameters
-    ----------
-    bundle : its directory
-    cells : of `repeatable`, sorted
-    parts : data sets and implementations; those installed by default
+    `cells`: of `repeatable`, sorted. `parts`: data sets and implementations; those installed by
+    default.
 
-    Raises
-    ------
-    UnknownNameError
-        For a data set or an algorithm that is not installed.
+    UnknownNameError for a data set or an algorithm that is not installed.
     """
     known, stated = parts or installed_parts(), read_scores(bundle)
     data = cast("KeptStages", _Deposited(bundle, known))

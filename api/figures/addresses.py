@@ -15,11 +15,7 @@ from survey_data.editions import SURVEY
 class Addresses:
     """Addresses of the marks of a figure.
 
-    Parameters
-    ----------
-    facts : the studies
-    page : address of the figure's own page, with its query
-    where : the figure's filters
+    `page`: address of the figure's own page, with its query. `where`: the figure's filters.
     """
 
     def __init__(self, facts: Facts, page: str, where: Where) -> None:

@@ -51,10 +51,7 @@ def matrix_figure(
 ) -> Figure:
     """Return the matrix of the studies that meet `where`, by two attributes or levels.
 
-    Raises
-    ------
-    InvalidValueError
-        For a level that is not known, naming those that are.
+    InvalidValueError for a level that is not known, naming those that are.
     """
     taxonomy = facts.taxonomy
     for name, level in (("rows", rows), ("columns", columns)):

@@ -72,17 +72,13 @@ def flow_figure(
 ) -> Figure:
     """Return a Sankey diagram of the studies that meet `where`.
 
+    InvalidValueError as `registry.flows.flows`.
+
     Parameters
     ----------
     name : of `CHAINS`
-    facts : the studies
     addresses : where marks lead
     where, counting : as `registry.flows.flows` takes them
-
-    Raises
-    ------
-    InvalidValueError
-        As `registry.flows.flows`.
     """
     chain = CHAINS[name]
     found = flows(chain.levels, where, counting, facts=facts)
@@ -99,11 +95,7 @@ def answer_figure(
 ) -> Figure:
     """Return a Sankey diagram of the studies behind an answer.
 
-    Parameters
-    ----------
-    answer, counting, grouped : as `registry.paths.answer_flow` takes them
-    facts : the studies
-    page : address of the answer, with its query
+    `answer`, `counting`, `grouped`: as `registry.paths.answer_flow` takes them.
     """
     made = answer_flow(answer, counting, grouped=grouped)
     keys = tuple(sorted({key for node in made.nodes for key in node.studies}))

@@ -18,10 +18,8 @@ SWEEPS = 8
 def crossings(columns: Columns, links: Links) -> float:
     """Return the sum over pairs of crossing links of the product of their values.
 
-    Parameters
-    ----------
-    columns : node ids, column by column, each from top to bottom
-    links : (source, target) in neighbouring columns -> value
+    `columns`: node ids, column by column, each from top to bottom. `links`: (source, target) in
+    neighbouring columns -> value.
     """
     place = {node: at for column in columns for at, node in enumerate(column)}
     total = 0.0
@@ -46,10 +44,8 @@ def order(
 ) -> tuple[tuple[str, ...], ...]:
     """Return the columns with their nodes in an order of few crossings.
 
-    Parameters
-    ----------
-    columns, links : as in `crossings`
-    pinned : indices of columns whose order stays as it is given
+    `columns`, `links`: as in `crossings`. `pinned`: indices of columns whose order stays as it is
+    given.
     """
     best = current = tuple(tuple(column) for column in columns)
     fewest = crossings(best, links)

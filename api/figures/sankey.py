@@ -45,11 +45,8 @@ def sankey(
 ) -> Plotly:
     """Return the diagram of nodes that have a band.
 
-    Parameters
-    ----------
-    stages, bands : nodes, each column from top to bottom, and links
-    headings : of the columns
-    pinned : columns whose order stays as it is given
+    `stages`, `bands`: nodes, each column from top to bottom, and links. `pinned`: columns whose
+    order stays as it is given.
     """
     linked = {end for band in bands for end in (band.source, band.target)}
     nodes = [stage for stage in stages if stage.id in linked]

@@ -88,16 +88,11 @@ def cached_site() -> Path | None:
 def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     """Build the site into a directory, which is replaced whole or not at all; return warnings.
 
-    Parameters
-    ----------
-    out : of the site; an earlier one there is replaced
-    progress : called as ``progress(done, total, what)`` in pages, each read and written
+    `out`: of the site; an earlier one there is replaced. `progress`: called as ``progress(done,
+    total, what)`` in pages, each read and written.
 
-    Raises
-    ------
-    GuideError
-        Where what builds it is not installed, it fails, or `out` holds anything but an earlier
-        site.
+    GuideError where what builds it is not installed, it fails, or `out` holds anything but an
+    earlier site.
     """
     missing = missing_builders()
     if missing:

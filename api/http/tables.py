@@ -75,9 +75,7 @@ class Table:
     path : below /v1
     function : of the service; its docstring is the description
     model : of the document
-    summary : its name in the reference
     kind : the media types it can be had in
-    method : of HTTP
     """
 
     path: str

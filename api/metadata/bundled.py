@@ -42,11 +42,8 @@ _SAID = {
 def documents(bundle: Path, who: Identity, descriptor: Mapping[str, Any]) -> dict[str, Any]:
     """Return Croissant documents by their path in the bundle.
 
-    Parameters
-    ----------
-    bundle : its directory, with tables, Parquet and samples written
-    who : made it
-    descriptor : its datapackage.json
+    `bundle`: its directory, with tables, Parquet and samples written. `descriptor`: its
+    datapackage.json.
     """
     tables = {
         folder: [

@@ -21,10 +21,7 @@ _SPDX = "https://spdx.org/licenses/"
 def codemeta(citation: str) -> dict[str, Any]:
     """Return the metadata of the software.
 
-    Raises
-    ------
-    CitationError
-        Where that cannot be read.
+    CitationError where that cannot be read.
     """
     people = authors(citation, "CITATION.cff")
     cited: Mapping[str, Any] = yaml.safe_load(citation)

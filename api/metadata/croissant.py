@@ -51,8 +51,6 @@ def file_object(
     name : of the file, unique within the data set
     address : where it is: a URL, or a path from the folder of the document
     media_types : the first is the one that Croissant knows
-    description : what it holds
-    content : its bytes
     """
     return {
         "@type": "cr:FileObject",
@@ -75,8 +73,6 @@ def record_set(
     ----------
     name : unique within the data set
     file : name of the file
-    description : what a row is
-    columns : in order
     key : columns that tell rows apart
     """
     keys = [{"@id": f"{name}/{column}"} for column in key]
@@ -106,7 +102,6 @@ class DatasetDescription:
 
     Attributes
     ----------
-    name, description : of the data set
     address : of its page; None where it has none, as in a bundle
     version : major.minor.patch
     keywords : words to find it by
@@ -124,15 +119,7 @@ class DatasetDescription:
 def croissant(
     what: DatasetDescription, who: Identity, files: Sequence[Entity], tables: Sequence[Entity]
 ) -> dict[str, Any]:
-    """Return the metadata of a data set as JSON-LD.
-
-    Parameters
-    ----------
-    what : the data set
-    who : made it
-    files : of the data set
-    tables : in the files
-    """
+    """Return the metadata of a data set as JSON-LD."""
     return {
         "@context": dict(CONTEXT),
         "@type": "sc:Dataset",

@@ -35,9 +35,6 @@ class Identity:
 
     Attributes
     ----------
-    title : name for people
-    version : of the distribution
-    summary : one sentence
     authors : as CITATION.cff names them
     released : date of this version
     citation : text of CITATION.cff (Citation File Format 1.2.0)
@@ -58,10 +55,7 @@ class Identity:
 def identity() -> Identity:
     """Say who the running code is.
 
-    Raises
-    ------
-    MissingFileError
-        Where a licence is not found.
+    MissingFileError where a licence is not found.
     """
     number, summary, authors = _project()
     written = _write("CITATION.cff")

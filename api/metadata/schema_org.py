@@ -53,12 +53,7 @@ def dataset(
 ) -> Entity:
     """Return a data set.
 
-    Parameters
-    ----------
-    card : of the data set
-    who : made it
-    landing : its page
-    variables : meaning of what is measured, by name
+    `variables`: meaning of what is measured, by name.
     """
     name = card["name"]
     return {
@@ -105,10 +100,7 @@ def record(who: Identity, landing: LandingPage, digest: str | None) -> Entity:
 def study(row: Mapping[str, Any], landing: LandingPage) -> Entity:
     """Return a mapped study; what is not known of it is left out.
 
-    Parameters
-    ----------
-    row : key, title, authors (separated by semicolons), year, venue and doi
-    landing : its page
+    `row`: key, title, authors (separated by semicolons), year, venue and doi.
     """
     doi, year = row["doi"], row["year"]
     people = [one.strip() for one in (row["authors"] or "").split(";") if one.strip()]

@@ -33,10 +33,7 @@ MEASURED: Mapping[str, str] = {
 def of_dataset(card: Mapping[str, Any], base: str | None) -> DatasetDescription:
     """Return what a data set is.
 
-    Parameters
-    ----------
-    card : of the data set
-    base : address of the service, ending in a slash; None where there is none, as in a bundle
+    `base`: address of the service, ending in a slash; None where there is none, as in a bundle.
     """
     name = card["name"]
     return DatasetDescription(
@@ -85,11 +82,8 @@ def tables_of_samples(errors: str, directions: str) -> list[Entity]:
 def files_of_samples(name: str, contents: Mapping[str, bytes], base: str) -> list[Entity]:
     """Return the files of a data set's errors and directions, as served.
 
-    Parameters
-    ----------
-    name : of the data set
-    contents : bytes by `errors` and `directions`
-    base : address of the service, ending in a slash
+    `contents`: bytes by `errors` and `directions`. `base`: address of the service, ending in a
+    slash.
     """
     said = {
         "errors": f"Errors sample by sample, condition {samples.CONDITION}.",
@@ -123,10 +117,7 @@ def table_of_data(content: bytes, name: str, base: str) -> tuple[Entity, Entity]
 def table_of_ranks(content: bytes, base: str) -> tuple[Entity, Entity]:
     """Return the CSV of the leaderboard, as served.
 
-    Parameters
-    ----------
-    content : its bytes
-    base : address of the service, ending in a slash
+    `base`: address of the service, ending in a slash.
     """
     file = file_object(
         "leaderboard.csv",

@@ -26,14 +26,7 @@ _LITERAL = re.compile(r"(?P<quotes>``?)(?P<code>[^`]+)(?P=quotes)")
 
 @dataclass(frozen=True)
 class Term:
-    """A word of the field.
-
-    Attributes
-    ----------
-    term : as it is written
-    short : its meaning in a few words
-    meaning : in a sentence or two
-    """
+    """A word of the field."""
 
     term: str
     short: str

@@ -175,10 +175,7 @@ class BoundedProtocol(H11Protocol):
 class FewAtOnce:
     """ASGI middleware: what one client may ask at once, beyond which 429 is answered, and a second.
 
-    Parameters
-    ----------
-    app : the service
-    proxies : addresses that ask for many clients
+    `proxies`: addresses that ask for many clients.
     """
 
     def __init__(self, app: ASGIApp, proxies: Container[str] = ()) -> None:

@@ -18,10 +18,7 @@ class Document:
 
     Attributes
     ----------
-    document : the JSON object
     columns : of the table, as `api.schema.table.columns_of` names them
-    rows : gives the rows of the table
-    links : values of the Link header
     cited : studies that can be had as references; None where there are none, or columns were chosen
     saved_as : name of a file of references, without suffix
     plotly : the figure of a document that is one, `data` and `layout`
@@ -53,9 +50,6 @@ def list_document(
 
     Parameters
     ----------
-    shown : the page
-    items : of the JSON
-    columns : of the table
     rows : gives the rows of the CSV; the items where left out
     fields : columns to which rows and items are narrowed; none of them where empty
     more : members of the document beside the items

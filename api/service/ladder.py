@@ -16,10 +16,7 @@ _RUNG = ("extractor", "model", "own_error_deg", "availability")
 def ladder(own: Mapping[str, Any] | None, measurements: Measurements) -> dict[str, Any] | None:
     """Return the rungs below a study's reported figure, on one data set and condition.
 
-    Parameters
-    ----------
-    own : score of the study's own method, with `dataset` and `condition`; None for none
-    measurements : published scores
+    `own`: score of the study's own method, with `dataset` and `condition`; None for none.
 
     Returns
     -------

@@ -35,12 +35,7 @@ Row = Mapping[str, Any]
 
 
 class Measurements:
-    """What has been measured, read once from published files; nothing where there are none.
-
-    Parameters
-    ----------
-    directory : of the published files
-    """
+    """What has been measured, read once from published files; nothing where there are none."""
 
     def __init__(self, directory: Path = PUBLISHED) -> None:
         self.directory = directory
@@ -274,9 +269,7 @@ class Measurements:
     def file(self, path: str) -> bytes:
         """Return the bytes of a published file; FileNotFoundError where there is none.
 
-        Parameters
-        ----------
-        path : relative to the published files
+        `path`: relative to the published files.
         """
         return read_bytes(self._store.directory / path)
 

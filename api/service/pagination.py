@@ -26,12 +26,8 @@ SHOWN_BY = {"limit", "cursor", "format", "fields", "safe", "whole"}
 class Page(Generic[Row]):
     """Some rows of a list, how many the list has, and where it goes on.
 
-    Attributes
-    ----------
-    items : the rows of this page
-    total : number of rows of the whole list
-    next : cursor of the next page; None on the last one
-    link : value of the Link header; None on the last page
+    `next`: cursor of the next page; None on the last one. `link`: value of the Link header; None on
+    the last page.
     """
 
     items: Sequence[Row]
@@ -72,10 +68,7 @@ def page(rows: Sequence[Row], path: str, query: Paged) -> Page[Row]:
 
     A cursor is bound to the path and the filters it was given out for.
 
-    Raises
-    ------
-    Problem
-        400 where the cursor was not given out for this list.
+    Problem 400 where the cursor was not given out for this list.
     """
     asked = query.model_dump(exclude_defaults=True)
     filters = {name: value for name, value in asked.items() if name not in SHOWN_BY}

@@ -58,10 +58,7 @@ PATH = "/v1/recommendations"
 def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
     """Return the answer to requirements that were read from a query, a body or a command line.
 
-    Raises
-    ------
-    Problem
-        For a value that the schema does not know of, such as a processor.
+    Problem for a value that the schema does not know of, such as a processor.
     """
     names = [n for n in (*PARAMETERS, *SETTINGS, "mission") if n in asked.model_fields_set]
     given = {name: getattr(asked, name) for name in names}
@@ -121,7 +118,6 @@ def document(
 
     Parameters
     ----------
-    answer : the answer
     asked : how much of it is wanted
     shown : the architectures of this page
     next_page : cursor of the next one

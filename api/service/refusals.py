@@ -23,10 +23,8 @@ Schema = Mapping[str, Any]
 def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -> Problem:
     """Return the problem of a request that does not fit a function.
 
-    Parameters
-    ----------
-    errors : as FastAPI lists Pydantic's; their `loc` begins with "path", "query" or "body"
-    endpoint : a path function, or one of the service
+    `errors`: as FastAPI lists Pydantic's; their `loc` begins with "path", "query" or "body".
+    `endpoint`: a path function, or one of the service.
 
     Returns
     -------

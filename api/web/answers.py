@@ -37,13 +37,8 @@ Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 class Answer(JSONResponse):
     """A document that can be a table too. NaN and infinities are null in JSON.
 
-    Parameters
-    ----------
-    document : the JSON object
-    columns : of the CSV, as `api.schema.table.columns_of` names them
-    rows : gives the rows of the CSV
-    links : values of the Link header
-    status_code : which FastAPI documents by its default
+    `columns`: of the CSV, as `api.schema.table.columns_of` names them. `status_code`: which FastAPI
+    documents by its default.
     """
 
     media_types: ClassVar[tuple[str, ...]] = (JSON, CSV)
@@ -173,10 +168,7 @@ def link(made: Response, *links: str) -> Response:
 def as_asked(made: Response, wanted: str, request: Request) -> Response:
     """Return what was made as it is sent: of CSV, for a spreadsheet or with a link to that.
 
-    Parameters
-    ----------
-    made : in the media type `wanted`
-    request : whose query says which
+    `made`: in the media type `wanted`. `request`: whose query says which.
     """
     made.headers.setdefault("vary", "Accept")
     query: bytes = request.scope["query_string"]

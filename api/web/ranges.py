@@ -37,11 +37,7 @@ def ranges(asked: str, size: int) -> list[range] | None:
 def parted(asked: Headers, headers: MutableHeaders, body: bytes) -> tuple[int, bytes]:
     """Return status and body of the answer to a request for a part; its headers are changed.
 
-    Parameters
-    ----------
-    asked : headers of the request
-    headers : of the whole answer, with its ETag
-    body : the whole of it
+    `asked`: headers of the request. `headers`: of the whole answer, with its ETag.
     """
     headers["accept-ranges"] = "bytes"
     known = asked.get("if-range", headers["etag"]) == headers["etag"]

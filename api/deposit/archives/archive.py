@@ -131,7 +131,6 @@ class Archive:
 
     Parameters
     ----------
-    server : whom to ask
     token : sent to it and to nobody else
     timeout : seconds that an answer may take
     sleep : waits so many seconds

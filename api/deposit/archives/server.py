@@ -23,10 +23,7 @@ class Server:
     def token(self) -> SecretStr:
         """Read the token from the environment.
 
-        Raises
-        ------
-        ArchiveError
-            Where there is none, or it is no word; what stands there is not said.
+        ArchiveError where there is none, or it is no word; what stands there is not said.
         """
         text = os.environ.get(self.variable, "").strip()
         if not text:
@@ -53,10 +50,7 @@ _ADDRESS = re.compile(
 def server_at(address: str) -> Server:
     """Return another archive that runs InvenioRDM; its token is in ARCHIVE_TOKEN.
 
-    Raises
-    ------
-    ArchiveError
-        For anything but https://host[:port], or http:// to this machine.
+    ArchiveError for anything but https://host[:port], or http:// to this machine.
     """
     plain = address.removesuffix("/")
     if not _ADDRESS.fullmatch(plain):
