@@ -165,10 +165,13 @@ def _message(error: BaseException) -> str:
 
 
 def load(name: str) -> Any:
-    """Make the command `name` from the `app` of its module."""
-    app = importlib.import_module(f"api.cli.commands.{name}").app
-    command = typer.main.get_command(app)
-    command.name = name
+    """Make the command `name` from its module: of the `app` of a group, else of the function."""
+    module = importlib.import_module(f"api.cli.commands.{name}")
+    if (made := getattr(module, "app", None)) is None:
+        made = typer.Typer(add_completion=False, rich_markup_mode=None)
+        made.command()(getattr(module, name))
+    command = typer.main.get_command(made)
+    command.name, command.help = name, command.help or COMMANDS[name]
     offer(command)
     return command
 

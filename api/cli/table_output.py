@@ -18,6 +18,7 @@ from api.cells import cell, plain_value
 from api.cli import spreadsheets
 from api.schema.former_names import with_former_names
 from api.schema.table import csv_of
+from api.service.documents import Document
 
 Row = Mapping[str, Any]
 
@@ -67,6 +68,21 @@ def emit(
             say(title)
         shown = [name for name in columns if not rows or any(_show(row.get(name)) for row in rows)]
         typer.echo(table(rows, shown, line_width(), bold=_style()))
+
+
+def emit_answer(
+    answer: Document,
+    form: Format,
+    shown: Sequence[str],
+    *,
+    rows: Sequence[Row] | None = None,
+    title: str | None = None,
+) -> None:
+    """Print a document of the service: all of it as JSON or CSV, some columns (and rows) else."""
+    if form is Format.TABLE:
+        emit(answer.rows() if rows is None else rows, shown, form, title=title)
+    else:
+        emit(answer.rows(), answer.columns, form, document=answer.document)
 
 
 def table(

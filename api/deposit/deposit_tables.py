@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +33,7 @@ from api.schema.deposited import (
 )
 from api.schema.scores import LeaderboardRow, Score
 from api.schema.table import Model
-from benchmark.claims.ledger import Entry, ledger
+from benchmark.claims.ledger import ledger
 from benchmark.leaderboard.board import build
 from benchmark.learning_curves import record as curves
 from benchmark.results.store import PUBLISHED_STUDIES, Store
@@ -44,8 +46,6 @@ from registry.taxonomy import taxonomy_rows
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})
 _PIPELINE = ("dataset", "condition", "extractor", "model")
 _KEY = (*_PIPELINE, "unit")
-_DATASET = {"dataset": ("datasets", "name")}
-_PARTS = {**_DATASET, "extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
 _RANKED = (
     *("rank", "group", "tied", *_PIPELINE),
     *("own_error_deg", "own_se", "on_bench_deg", "on_bench_basis"),
@@ -96,75 +96,33 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         (*compared, *beside.rows(unit=None)), key=lambda row: [row[name] for name in _KEY]
     )
     pins = {**store.pins(), **beside.pins()}
+    ranked = [
+        {name: row[name] for name in _RANKED}
+        for dataset in build(compared)["datasets"]
+        for row in dataset["rows"]
+    ]
+    entries = ledger(published)
     return [
-        _table(
-            "algorithms",
-            Algorithm,
-            "Algorithms",
-            "Every implementation of an extractor or a model.",
-            [implementation.to_dict() for implementation in catalogue().implementations()],
-            primary=("name",),
-        ),
-        _table(
-            "datasets",
-            DepositedDataset,
-            "Data sets",
-            "The simulated sensors that pipelines are scored on: the standard ones, and sensors of "
-            "single studies, on which no others are scored.",
-            derived_tables.datasets(),
-            primary=("name",),
-        ),
-        _table(
-            "scores",
-            Score,
-            "Scores",
-            "One row a pipeline on a data set in a condition and a unit of the sensor; a pure "
-            "function of code and data.",
-            scores,
-            primary=_KEY,
-            foreign=_PARTS,
-        ),
-        _table(
-            "leaderboard",
-            LeaderboardRow,
-            "Leaderboard",
-            "Pipelines ranked in each data set and condition; numbers of every row stand in "
-            "scores.",
-            [
-                {name: row[name] for name in _RANKED}
-                for dataset in build(compared)["datasets"]
-                for row in dataset["rows"]
-            ],
-            primary=_PIPELINE,
-            foreign=_PARTS,
-        ),
-        _table(
-            "data",
-            Pin,
-            "Generated data",
-            "Hash of every generated split of every data set, and its Cramer-Rao bound.",
-            [dataclasses.asdict(pin) for _, pin in sorted(pins.items())],
-            primary=("dataset", "condition", "split"),
-            foreign=_DATASET,
-        ),
+        _table("algorithms", Algorithm, [one.to_dict() for one in catalogue().implementations()]),
+        _table("datasets", DepositedDataset, derived_tables.datasets()),
+        _table("scores", Score, scores),
+        _table("leaderboard", LeaderboardRow, ranked),
+        _table("data", Pin, [dataclasses.asdict(pin) for _, pin in sorted(pins.items())]),
         *_of_experiments(published),
-        *_of_facts(scores),
-        *_of_claims(ledger(published)),
+        _table("resolution", Resolution, derived_tables.resolution(scores)),
+        _table("all_studies", IdentifiedStudy, derived_tables.all_studies()),
+        _table("editions", DepositedEdition, derived_tables.edition_rows()),
+        _table("verdicts", ClauseVerdict, derived_tables.verdicts()),
+        _table("publications", PublicationCount, derived_tables.publication_counts()),
+        _table("claim_verdicts", ClaimVerdict, derived_tables.claim_verdicts(entries)),
+        _table("claim_rules", DepositedRule, derived_tables.claim_rules(entries)),
+        _table("claim_trials", ClaimTrial, derived_tables.claim_trials(entries)),
     ]
 
 
 def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
     """Make the table of the samples that go along, a row a file of arrays."""
-    return _table(
-        "frames",
-        SampleFile,
-        "Samples in this bundle",
-        "Which samples of the standard data sets lie in frames/: every split of the nominal "
-        "condition, whole. The code makes those of other conditions and units.",
-        rows,
-        primary=("dataset", "condition", "split"),
-        foreign=_DATASET,
-    )
+    return _table("frames", SampleFile, rows)
 
 
 def _of_experiments(published: Path) -> Iterator[MeasuredTable]:
@@ -179,141 +137,31 @@ def _of_experiments(published: Path) -> Iterator[MeasuredTable]:
             }
             for row in swept
         ]
-        yield _table(
-            "sweeps",
-            DepositedSweep,
-            "Sweeps",
-            "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
-            rows,
-            primary=("series", "sweep", "point", "extractor"),
-            foreign={"extractor": ("algorithms", "name")},
-        )
+        yield _table("sweeps", DepositedSweep, rows)
     if rows := curves.published_curves(published):
-        yield _table(
-            "curves",
-            Curve,
-            "Learning curves",
-            "How many calibration poses the leaders of each data set need to be within 10 % of "
-            "their floor.",
-            [{name: row[name] for name in row if name != "points"} for row in rows],
-            primary=_PIPELINE,
-            foreign=_PARTS,
-        )
-        yield _table(
-            "curve_points",
-            DepositedPoint,
-            "Points of the learning curves",
-            "Errors after so many calibration poses, over draws of poses and units of the sensor.",
-            [
-                {**{name: row[name] for name in _PIPELINE}, **point}
-                for row in rows
-                for point in row["points"]
-            ],
-            primary=(*_PIPELINE, "poses"),
-            foreign=_PARTS,
-        )
+        whole = [{name: row[name] for name in row if name != "points"} for row in rows]
+        yield _table("curves", Curve, whole)
+        points = [
+            {**{name: row[name] for name in _PIPELINE}, **point}
+            for row in rows
+            for point in row["points"]
+        ]
+        yield _table("curve_points", DepositedPoint, points)
 
 
-def _of_facts(scores: Sequence[Mapping[str, Any]]) -> list[MeasuredTable]:
-    """Make the tables that follow from facts and plan, with the numbers of none."""
-    return [
-        _table(
-            "resolution",
-            Resolution,
-            "Resolution of the studies",
-            "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
-            "each part, and the rule that fills it where the study does not state it.",
-            derived_tables.resolution(scores),
-            primary=("study", "detector", "mask", *_PIPELINE),
-            foreign={**_PARTS, "study": ("all_studies", "study")},
-        ),
-        _table(
-            "all_studies",
-            IdentifiedStudy,
-            "Studies of both editions",
-            "The survey's studies and those it does not map, distinguished by their edition.",
-            derived_tables.all_studies(),
-            primary=("study",),
-            foreign={"edition": ("editions", "edition")},
-        ),
-        _table(
-            "editions",
-            DepositedEdition,
-            "Editions of the studies",
-            "The survey's studies, and those it does not map: each with the version to cite.",
-            derived_tables.edition_rows(),
-            primary=("edition",),
-        ),
-        _table(
-            "verdicts",
-            ClauseVerdict,
-            "Verdicts of the findings",
-            "Each clause of the survey's checkable statements, judged strictly by the tables, with "
-            "the counts and the evidence that would turn it, and the verdict of the whole.",
-            derived_tables.verdicts(),
-            primary=("finding", "clause"),
-            foreign={"finding": ("findings", "id")},
-        ),
-        _table(
-            "publications",
-            PublicationCount,
-            "Publications per year and per venue",
-            "Mapped studies of each year, and of each venue that is known.",
-            derived_tables.publication_counts(),
-            primary=("per", "year_or_venue"),
-        ),
-    ]
+@cache
+def _described() -> Mapping[str, Mapping[str, Any]]:
+    return tomllib.loads(Path(__file__).with_name("tables.toml").read_text("utf-8"))
 
 
-def _of_claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
-    """Make the tables of the survey's claims, as they came out."""
-    claimed = {"claim": ("claims", "id")}
-    return [
-        _table(
-            "claim_verdicts",
-            ClaimVerdict,
-            "Verdicts of the claims",
-            "Each of the survey's statements about algorithms, put to the test.",
-            derived_tables.claim_verdicts(entries),
-            primary=("claim",),
-            foreign=claimed,
-        ),
-        _table(
-            "claim_rules",
-            DepositedRule,
-            "Rules of the claims",
-            "Criteria of each claim, with the result of the trials.",
-            derived_tables.claim_rules(entries),
-            primary=("claim", "rule"),
-            foreign=claimed,
-        ),
-        _table(
-            "claim_trials",
-            ClaimTrial,
-            "Trials of the claims",
-            "The statistic of every rule in every trial.",
-            derived_tables.claim_trials(entries),
-            primary=("claim", "rule", "trial"),
-            foreign=claimed,
-        ),
-    ]
-
-
-def _table(
-    name: str,
-    model: Model,
-    title: str,
-    description: str,
-    rows: Sequence[Mapping[str, Any]],
-    *,
-    primary: Sequence[str],
-    foreign: Mapping[str, tuple[str, str]] | None = None,
-) -> MeasuredTable:
+def _table(name: str, model: Model, rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
+    """Make a table that tables.toml describes, of rows of a model."""
+    said = _described()[name]
     columns = list(dict.fromkeys(column for row in rows for column in row))
     cells = ([cell(taxonomy_rows(name, row.get(name))) for name in columns] for row in rows)
     text = csv_text(columns, cells)
-    described = schema(model, columns, primary=primary, foreign=foreign)
-    return MeasuredTable(name, title, description, text, described)
+    described = schema(model, columns, primary=said["primary"], foreign=said.get("foreign"))
+    return MeasuredTable(name, said["title"], said["description"], text, described)
 
 
 def read_descriptor(path: Path) -> dict[str, Any]:

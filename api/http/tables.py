@@ -7,31 +7,30 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import wraps
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, NamedTuple, get_type_hints
 
 from fastapi import APIRouter, Body, Path, Query
 
-from api.schema import advice as of_advice
-from api.schema import algorithms as of_algorithms
-from api.schema import assessment as of_assessment
-from api.schema import boards as of_boards
-from api.schema import claims as of_claims
-from api.schema import comparison as of_comparison
-from api.schema import curves as of_curves
-from api.schema import datasets as of_datasets
-from api.schema import directions as of_directions
-from api.schema import figures as of_figures
-from api.schema import flows as of_flows
-from api.schema import measured_figures as of_measured
-from api.schema import recommendations as of_recommendations
-from api.schema import samples as of_samples
-from api.schema import scores as of_scores
-from api.schema import search as of_search
-from api.schema import studies as of_studies
-from api.schema import taxonomy as of_taxonomy
+from api.schema.advice import Advices, Protocol
+from api.schema.algorithms import Algorithms
+from api.schema.assessment import Assessment, Sweeps
 from api.schema.base import OnlyFormat, Selected
+from api.schema.boards import Architectures, Overview
+from api.schema.claims import ClaimDetail, Claims
+from api.schema.comparison import Comparison, EqualHeights
+from api.schema.curves import Curves
+from api.schema.datasets import DatasetDetail, Datasets, Realism, SoldSensors
+from api.schema.directions import Directions
+from api.schema.figures import Figure, Figures
+from api.schema.flows import Flows
+from api.schema.measured_figures import Gap, Robustness, TradeOff
+from api.schema.recommendations import AnswerFlow, Designs, Recommendations
+from api.schema.samples import SampleErrors
+from api.schema.scores import Leaderboard, LeaderboardRows, Scores
+from api.schema.search import SearchResults
+from api.schema.studies import Editions, Studies, StudyDetail, StudyQuery
+from api.schema.taxonomy import Taxonomy
 from api.service import (
     advice,
     algorithms,
@@ -66,16 +65,11 @@ _PARTS = {
 }
 
 
-@dataclass(frozen=True)
-class Table:
-    """A document of the service at an address.
+class Table(NamedTuple):
+    """A document at an address below /v1.
 
-    Attributes
-    ----------
-    path : below /v1
-    function : of the service; its docstring is the description
-    model : of the document
-    kind : the media types it can be had in
+    The docstring of the service's function is its description, `summary` its name in the reference;
+    `kind` says in which media types it can be had.
     """
 
     path: str
@@ -86,138 +80,108 @@ class Table:
     method: str = "GET"
 
 
+_ANSWERED = "Recommended sensors and calibrations"
 TABLES = (
-    Table("/taxonomy", taxonomy.taxonomy, of_taxonomy.Taxonomy, "Vocabulary of the survey"),
-    Table("/studies", studies.studies, of_studies.Studies | Selected, "Studies", CitedAnswer),
-    Table("/editions", studies.editions, of_studies.Editions, "Editions of the studies"),
-    Table("/studies/{key}", studies.study, of_studies.StudyDetail, "A study", CitedAnswer),
-    Table("/flows/{chart}", taxonomy.flows, of_flows.Flows, "A decision flow"),
-    Table("/figures", figures.figures, of_figures.Figures, "The survey's figures"),
+    Table("/taxonomy", taxonomy.taxonomy, Taxonomy, "Vocabulary of the survey"),
+    Table("/studies", studies.studies, Studies | Selected, "Studies", CitedAnswer),
+    Table("/editions", studies.editions, Editions, "Editions of the studies"),
+    Table("/studies/{key}", studies.study, StudyDetail, "A study", CitedAnswer),
+    Table("/flows/{chart}", taxonomy.flows, Flows, "A decision flow"),
+    Table("/figures", figures.figures, Figures, "The survey's figures"),
     Table(
         "/figures/matrix",
         figures.matrix,
-        of_figures.Figure,
+        Figure,
         "Evidence map: studies by two attributes",
         FigureAnswer,
     ),
-    Table(
-        "/figures/gap",
-        gap.gap,
-        of_measured.Gap,
-        "Claimed, simulated and possible errors",
-        FigureAnswer,
-    ),
-    Table(
-        "/figures/trade-off",
-        trade_off.trade_off,
-        of_measured.TradeOff,
-        "Error against cost",
-        FigureAnswer,
-    ),
+    Table("/figures/gap", gap.gap, Gap, "Claimed, simulated and possible errors", FigureAnswer),
+    Table("/figures/trade-off", trade_off.trade_off, TradeOff, "Error against cost", FigureAnswer),
     Table(
         "/figures/robustness",
         robustness.robustness,
-        of_measured.Robustness,
+        Robustness,
         "Errors by condition",
         FigureAnswer,
     ),
-    Table(
-        "/figures/{figure}",
-        figures.figure,
-        of_figures.Figure,
-        "A figure of the survey",
-        FigureAnswer,
-    ),
-    Table(
-        "/recommendations",
-        recommendations.recommendations,
-        of_recommendations.Recommendations,
-        "Recommended sensors and calibrations",
-    ),
+    Table("/figures/{figure}", figures.figure, Figure, "A figure of the survey", FigureAnswer),
+    Table("/recommendations", recommendations.recommendations, Recommendations, _ANSWERED),
     Table(
         "/recommendations",
         recommendations.recommend,
-        of_recommendations.Recommendations,
-        "Recommended sensors and calibrations (requirements in the body)",
+        Recommendations,
+        f"{_ANSWERED} (requirements in the body)",
         method="POST",
     ),
     Table(
         "/recommendations/flow",
         recommendations.recommendations_flow,
-        of_recommendations.AnswerFlow,
+        AnswerFlow,
         "Decision flow of an answer",
     ),
     Table(
         "/recommendations/designs",
         recommendations.recommended_designs,
-        of_recommendations.Designs,
+        Designs,
         "All calibrations of an answer",
     ),
-    Table(
-        "/algorithms", algorithms.algorithms, of_algorithms.Algorithms | Selected, "Implementations"
-    ),
-    Table("/datasets", datasets.datasets, of_datasets.Datasets | Selected, "Data sets"),
-    Table("/datasets/{name}", datasets.dataset, of_datasets.DatasetDetail, "A data set"),
+    Table("/algorithms", algorithms.algorithms, Algorithms | Selected, "Implementations"),
+    Table("/datasets", datasets.datasets, Datasets | Selected, "Data sets"),
+    Table("/datasets/{name}", datasets.dataset, DatasetDetail, "A data set"),
     Table(
         "/datasets/{name}/errors",
         datasets.errors,
-        of_samples.SampleErrors | Selected,
+        SampleErrors | Selected,
         "Errors of each sample",
     ),
-    Table(
-        "/realism", datasets.realism, of_datasets.Realism, "Data sets compared with built sensors"
-    ),
-    Table(
-        "/realism/sold", datasets.as_sold, of_datasets.SoldSensors, "Built sensors as they are sold"
-    ),
-    Table("/results", scores.results, of_scores.Scores | Selected, "Scores"),
-    Table("/leaderboard", leaderboard.leaderboard, of_scores.Leaderboard, "Leaderboard"),
+    Table("/realism", datasets.realism, Realism, "Data sets compared with built sensors"),
+    Table("/realism/sold", datasets.as_sold, SoldSensors, "Built sensors as they are sold"),
+    Table("/results", scores.results, Scores | Selected, "Scores"),
+    Table("/leaderboard", leaderboard.leaderboard, Leaderboard, "Leaderboard"),
     Table(
         "/leaderboard/architectures",
         leaderboard.architectures,
-        of_boards.Architectures | Selected,
+        Architectures | Selected,
         "Best pipeline of each architecture",
     ),
     Table(
         "/leaderboard/overview",
         leaderboard.overview,
-        of_boards.Overview,
+        Overview,
         "Ratio to the bound by part of the pipeline",
     ),
     Table(
         "/leaderboard/{dataset}",
         leaderboard.leaderboard_of_dataset,
-        of_scores.LeaderboardRows | Selected,
+        LeaderboardRows | Selected,
         "Leaderboard of a data set",
     ),
-    Table(
-        "/sweeps", scores.sweeps, of_assessment.Sweeps | Selected, "Sweeps on reference features"
-    ),
-    Table("/curves", scores.curves, of_curves.Curves | Selected, "Learning curves"),
+    Table("/sweeps", scores.sweeps, Sweeps | Selected, "Sweeps on reference features"),
+    Table("/curves", scores.curves, Curves | Selected, "Learning curves"),
     Table(
         "/assessment",
         assessment.assessment,
-        of_assessment.Assessment,
+        Assessment,
         "Assessment of the survey, with measured scores",
     ),
-    Table("/claims", claims.claims, of_claims.Claims | Selected, "Claims of the survey, tested"),
-    Table("/claims/{id}", claims.claim, of_claims.ClaimDetail, "A claim"),
+    Table("/claims", claims.claims, Claims | Selected, "Claims of the survey, tested"),
+    Table("/claims/{id}", claims.claim, ClaimDetail, "A claim"),
     Table(
         "/directions",
         directions.directions,
-        of_directions.Directions,
+        Directions,
         "Future directions of the survey, decided",
     ),
-    Table("/compare", comparing.compare, of_comparison.Comparison, "Comparison"),
+    Table("/compare", comparing.compare, Comparison, "Comparison"),
     Table(
         "/compare/equal",
         comparing.equal_heights,
-        of_comparison.EqualHeights,
+        EqualHeights,
         "Masks at equal height, detector and field",
     ),
-    Table("/search", search.search, of_search.SearchResults, "Search"),
-    Table("/advice", advice.advice, of_advice.Advices | Selected, "The survey's advice"),
-    Table("/protocol", advice.protocol, of_advice.Protocol, "Rules for studies and scores"),
+    Table("/search", search.search, SearchResults, "Search"),
+    Table("/advice", advice.advice, Advices | Selected, "The survey's advice"),
+    Table("/protocol", advice.protocol, Protocol, "Rules for studies and scores"),
 )
 
 
@@ -233,7 +197,7 @@ def path_function(function: Callable[..., Document], kind: type[Answer] = Answer
 
     types: dict[str, Any] = {name: _part(name, hint) for name, hint in hints.items()}
     types["known"] = Known
-    unasked = of_studies.StudyQuery if kind is CitedAnswer else OnlyFormat
+    unasked = StudyQuery if kind is CitedAnswer else OnlyFormat
     types["query"] = Annotated[hints.get("query", unasked), Query()]
     if body := hints.get("body"):
         types["body"] = Annotated[body, Body()]

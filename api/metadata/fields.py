@@ -40,7 +40,7 @@ def schema(
     columns: Sequence[str],
     *,
     primary: Sequence[str],
-    foreign: Mapping[str, tuple[str, str]] | None = None,
+    foreign: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, Any]:
     """Describe a table as Table Schema v2.
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion, example
+from api.schema.base import Shape, SortedQuestion, example, page_of
 from api.schema.parameters import Several, several
 from api.schema.words import Detector, Mask
 
@@ -26,12 +26,6 @@ class Advice(Shape):
     section: str = Field(description="Label in the survey's source.")
     section_name: str = Field(description="Name of the section, with printed number.")
     note: str
-
-
-class Advices(Listing):
-    """A page of advice."""
-
-    items: list[Advice]
 
 
 class Statement(Shape):
@@ -60,3 +54,6 @@ class AdviceQuery(SortedQuestion, rows=Advice):
     requirement: Several[Requirement] = several("Only advice for this kind.")
     detector: Several[Detector] = several("Only advice that names this detector.")
     mask: Several[Mask] = several("Only advice that names this mask.")
+
+
+Advices = page_of(Advice, "Advices", "A page of advice.")

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion, example
+from api.schema.base import Shape, SortedQuestion, example, page_of
 from api.schema.parameters import (
     GIVEN,
 )
@@ -33,15 +33,12 @@ class Algorithm(Shape):
     summary: str = Field(description="One-sentence summary.")
 
 
-class Algorithms(Listing):
-    """A page of implementations."""
-
-    items: list[Algorithm]
-
-
 class AlgorithmsQuery(SortedQuestion, rows=Algorithm):
     """Which implementations."""
 
     model_config = example(role="extractor", limit=1)
 
     role: Annotated[Role | None, GIVEN] = Field(None, description="Only this role.")
+
+
+Algorithms = page_of(Algorithm, "Algorithms", "A page of implementations.")

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion, example
+from api.schema.base import OpenShape, Shape, SortedQuestion, TableQuestion, example, page_of
 from api.schema.parameters import (
     Several,
     several,
@@ -45,12 +45,6 @@ class Sweep(OpenShape):
     reason: str
     extractor_taxonomy: str
     extractor_version: int
-
-
-class Sweeps(Listing):
-    """A page of sweeps."""
-
-    items: list[Sweep]
 
 
 class JudgedProperty(Shape):
@@ -136,3 +130,6 @@ class SweepsQuery(SortedQuestion, rows=Sweep):
     series: Several[Series] = several("Only this feature.")
     sweep: Several[SweepName] = several("Only this sweep.")
     extractor: Several[ExtractorName] = several("Only this extractor.")
+
+
+Sweeps = page_of(Sweep, "Sweeps", "A page of sweeps.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, create_model
 from pydantic_core import CoreSchema
 
 from api.schema.former_names import MEMBERS
@@ -57,6 +57,12 @@ class Listing(Shape):
 
     total: int = Field(description="Total number of items.")
     next: str | None = Field(description="Cursor of the next page; null on the last page.")
+
+
+def page_of(row: Model, name: str, words: str) -> Any:
+    """Return the model of a page of a list of such rows; `words` describe it."""
+    items: Any = (list[row], ...)  # type: ignore[valid-type]
+    return create_model(name, __base__=Listing, __doc__=words, __module__=__name__, items=items)
 
 
 class Question(BaseModel):

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from api.schema.base import Listing, Shape, SortedQuestion, example
+from api.schema.base import Shape, SortedQuestion, example, page_of
 from api.schema.parameters import (
     Several,
     several,
@@ -69,12 +69,6 @@ class Curve(CurveRow):
     points: list[CurvePoint] = Field(description="Points of the curve, by number of poses.")
 
 
-class Curves(Listing):
-    """A page of learning curves."""
-
-    items: list[Curve]
-
-
 class CurvesQuery(SortedQuestion, rows=CurveRow):
     """Which learning curves."""
 
@@ -83,3 +77,6 @@ class CurvesQuery(SortedQuestion, rows=CurveRow):
     dataset: Several[DatasetName] = several("Only this data set.")
     extractor: Several[ExtractorName] = several("Only this extractor.")
     model: Several[ModelName] = several("Only this model.")
+
+
+Curves = page_of(Curve, "Curves", "A page of learning curves.")

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion, example
+from api.schema.base import OpenShape, Shape, SortedQuestion, TableQuestion, example, page_of
 from api.schema.parameters import (
     Several,
     several,
@@ -150,12 +150,6 @@ class DatasetDetail(Dataset):
     data: list[Data] = Field(description="Splits of the data set under each condition.")
 
 
-class Datasets(Listing):
-    """A page of standard data sets."""
-
-    items: list[Dataset]
-
-
 class DatasetsQuery(SortedQuestion, rows=Dataset):
     """Which page of the data sets."""
 
@@ -213,3 +207,6 @@ class SoldSensors(Shape):
     words: str = Field(description="How many agree.")
     items: list[SoldSensor]
     left_out: list[LeftOutSensor] = Field(description="Built sensors that are not simulated.")
+
+
+Datasets = page_of(Dataset, "Datasets", "A page of standard data sets.")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from api.schema.base import Listing, Shape, TableQuestion, example
+from api.schema.base import Shape, TableQuestion, example, page_of
 from api.schema.parameters import (
     DEFAULT_PAGE,
     FIELDS,
@@ -53,7 +53,6 @@ class SampleError(Shape):
     )
 
 
-class SampleErrors(Listing):
-    """A page of errors, by extractor, model, unit and sample."""
-
-    items: list[SampleError]
+SampleErrors = page_of(
+    SampleError, "SampleErrors", "A page of errors, by extractor, model, unit and sample."
+)

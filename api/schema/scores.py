@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion, example
+from api.schema.base import OpenShape, Shape, SortedQuestion, TableQuestion, example, page_of
 from api.schema.parameters import (
     DEFAULT_PAGE,
     GIVEN,
@@ -96,12 +96,6 @@ class Score(Place):
     rms_70_90_deg: float | None = None
     rms_90_180_deg: float | None = None
     metric_version: int | None = Field(None, description="Version of the metrics.")
-
-
-class Scores(Listing):
-    """A page of scores."""
-
-    items: list[Score]
 
 
 class Rank(OpenShape):
@@ -204,12 +198,6 @@ class Leaderboard(OpenShape):
     next: str | None = Field(description="Cursor of the next page; null on the last page.")
 
 
-class LeaderboardRows(Listing):
-    """A page of a data set's leaderboard, within a condition the best of each extractor first."""
-
-    items: list[LeaderboardRow]
-
-
 class ScoresQuery(SortedQuestion, rows=Score):
     """Which scores."""
 
@@ -245,3 +233,11 @@ class LeaderboardQuery(SortedQuestion, rows=LeaderboardRow):
             "Rank by the field of view within which the RMS error is at most this, degrees."
         ),
     )
+
+
+Scores = page_of(Score, "Scores", "A page of scores.")
+LeaderboardRows = page_of(
+    LeaderboardRow,
+    "LeaderboardRows",
+    "A page of a data set's leaderboard, within a condition the best of each extractor first.",
+)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from api.schema.base import Listing, Shape, TableQuestion, example
+from api.schema.base import Shape, TableQuestion, example, page_of
 from api.schema.parameters import GIVEN, Cursor, Limit, Several, several
 
 Kind = Literal["study", "algorithm", "dataset", "claim", "attribute", "word"]
@@ -41,7 +41,4 @@ class Found(Shape):
     address: str | None = Field(description="Address in the API.")
 
 
-class SearchResults(Listing):
-    """A page of search results, best first."""
-
-    items: list[Found]
+SearchResults = page_of(Found, "SearchResults", "A page of search results, best first.")

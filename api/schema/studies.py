@@ -9,12 +9,12 @@ from pydantic import Field
 from api.schema import words
 from api.schema.base import (
     CitedQuestion,
-    Listing,
     OfEdition,
     Shape,
     SortedQuestion,
     TableQuestion,
     example,
+    page_of,
 )
 from api.schema.parameters import (
     GIVEN,
@@ -262,12 +262,6 @@ class Editions(Shape):
     items: list[Edition]
 
 
-class Studies(Listing):
-    """A page of studies."""
-
-    items: list[Study]
-
-
 class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
     """Which studies."""
 
@@ -289,3 +283,6 @@ class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
             "Search words; all must occur in key, title, authors or venue. Case does not matter."
         ),
     )
+
+
+Studies = page_of(Study, "Studies", "A page of studies.")

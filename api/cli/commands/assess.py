@@ -9,13 +9,10 @@ import typer
 
 from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, say
-from api.schema.assessment import AssessmentQuery, VerdictRow
-from api.schema.table import columns_of
+from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
+from api.schema.assessment import AssessmentQuery
 from api.service.assessment import assessment
 from benchmark.assessment.definitions import DEFINITIONS
-
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("method", "taxonomy", "case_study", "property", "survey", "measured", "agreement"),
@@ -24,7 +21,6 @@ COLUMNS = (
 _MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not judged": ".", "not measured": "-"}
 
 
-@app.command()
 @asked_by(AssessmentQuery, "method")
 def assess(
     *,
@@ -42,8 +38,7 @@ def assess(
     answer = ask(assessment, asked)
     document = answer.document
     if form is not Format.TABLE or asked:
-        columns: tuple[str, ...] = COLUMNS if form is Format.TABLE else columns_of(VerdictRow)
-        emit(answer.rows(), columns, form, document=document)
+        emit_answer(answer, form, COLUMNS)
         return
     rows = []
     for row in document["methods"]:

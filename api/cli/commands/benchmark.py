@@ -23,8 +23,6 @@ from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
 from benchmark.plan.combinations import Exclusion, cells, list_exclusions
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
     *(
@@ -38,7 +36,6 @@ COLUMNS = (
 )
 
 
-@app.command()
 @asked_by(ScoresQuery, "dataset", "condition", "extractor", "model")
 def benchmark(
     context: typer.Context,

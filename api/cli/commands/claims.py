@@ -9,21 +9,17 @@ import typer
 from api.cli.asking import ask
 from api.cli.completion import complete
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
 from api.cli.wrong_call import WrongCallError
 from api.schema import words
-from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
-from api.schema.table import columns_of
+from api.schema.claims import ClaimsQuery
 from api.service import claims as service
 from api.service.documents import Document
-
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 RULES_THEN = ("rule", "statistic", "decides", "estimate", "low", "high", "result")
 RULES = (*RULES_THEN[:-1], "trials", "result")
 
 
-@app.command()
 @asked_by(ClaimsQuery, "verdict", "q", q="search")
 def claims(
     claim: Annotated[
@@ -55,23 +51,16 @@ def claims(
         raise WrongCallError("--search: got nothing; expected a word or several")
     answer = ask(service.claims, asked)
     document = answer.document
-    if form is Format.CSV:
-        emit(answer.rows(), columns_of(ClaimRow), form)
-        return
     counts = ", ".join(f"{n} {name}" for name, n in document["tally"].items() if n)
-    emit(
-        [{**item, "claim": item["statement"]} for item in document["items"]],
-        ("id", "verdict", "claim", "study"),
-        form,
-        document=document,
-        title=f"{document['total']} claims: {counts or 'none'}",
-    )
+    title = f"{document['total']} claims: {counts or 'none'}"
+    rows = [{**item, "claim": item["statement"]} for item in document["items"]]
+    emit_answer(answer, form, ("id", "verdict", "claim", "study"), rows=rows, title=title)
 
 
 def _one(answer: Document, form: Format) -> None:
     document = answer.document
     if form is not Format.TABLE:
-        emit(answer.rows(), columns_of(CheckedRule), form, document=document)
+        emit_answer(answer, form, ())
         return
     say(f"{document['id']} {document['statement']}", "    ")
     by = f", {document['study']}" if document["study"] else ""

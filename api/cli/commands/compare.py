@@ -10,15 +10,12 @@ import typer
 from api.cli.asking import ask
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit_answer, say
 from api.cli.wrong_call import WrongCallError
-from api.schema.comparison import ComparedRow, CompareQuery, MaskAtEqualHeight
-from api.schema.table import columns_of
+from api.schema.comparison import CompareQuery
 from api.service.comparing import compare as compared
 from api.service.comparing import equal_document, equal_heights
 from api.service.documents import Document
-
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 #: What a terminal shows; JSON has everything.
 _SHOWN = (
@@ -28,7 +25,6 @@ _SHOWN = (
 _EQUAL = ("design", "pipeline", "flight", "low", "high", "own", "bound")
 
 
-@app.command()
 @asked_by(CompareQuery, "architecture", "dataset", "pipeline", "condition")
 def compare(
     *,
@@ -60,24 +56,21 @@ def compare(
     if not equal:
         if changed:
             raise WrongCallError("--height, --field and --units need --equal")
-        answer = ask(compared, asked)
-        shown = _SHOWN if form is Format.TABLE else columns_of(ComparedRow)
-        emit(answer.rows(), shown, form, document=answer.document)
+        emit_answer(ask(compared, asked), form, _SHOWN)
         return
     if asked:
         raise WrongCallError("--equal takes no architectures, data set or pipelines")
     answer = _measured(height, field, units, workers) if changed else ask(equal_heights)
-    if form is Format.TABLE:
-        _show(answer)
-    else:
-        emit(answer.rows(), columns_of(MaskAtEqualHeight), form, document=answer.document)
-
-
-def _show(answer: Document) -> None:
-    """Print the masks that have an error as a table in degrees, then why others have none."""
     rows = answer.rows()
-    measured = [row for row in rows if row["flight_error_deg"] is not None]
-    emit([_cells(row) for row in measured], _EQUAL, Format.TABLE)
+    measured = [_cells(row) for row in rows if row["flight_error_deg"] is not None]
+    emit_answer(answer, form, _EQUAL, rows=measured)
+    if form is Format.TABLE:
+        _explain(answer)
+
+
+def _explain(answer: Document) -> None:
+    """Say why some masks have no error, and what all have in common."""
+    rows = answer.rows()
     for row in rows:
         if row["flight_error_deg"] is None:
             say(f"{row['design']}: {row['reason'] or 'below 95 % availability in flight'}")

@@ -9,11 +9,8 @@ import typer
 from api.cli.measuring import WorkersOption
 from benchmark.progress import terminal_progress
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-
-@app.command("compile")
-def compile_command(
+def compile(  # noqa: A001 - as it is called
     *,
     workers: WorkersOption = 1,
     quiet: Annotated[bool, typer.Option(help="No message at the end.")] = False,

@@ -9,8 +9,6 @@ import typer
 
 from api.cli.completion import VARIABLE
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 
 class Shell(StrEnum):
     """Shells that can complete."""
@@ -20,7 +18,6 @@ class Shell(StrEnum):
     FISH = "fish"
 
 
-@app.command()
 def completion(
     shell: Annotated[Shell, typer.Argument(help="Shell.")],
 ) -> None:

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import typer
-
 from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit
-from api.schema.curves import CurveRow, CurvesQuery
+from api.cli.table_output import Format, FormatOption, emit_answer
+from api.schema.curves import CurvesQuery
 from api.schema.parameters import LARGEST_PAGE
-from api.schema.table import columns_of
 from api.service.scores import curves as learning_curves
-
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 #: What a terminal shows; JSON has everything.
 _SHOWN = (
@@ -21,7 +16,6 @@ _SHOWN = (
 )
 
 
-@app.command()
 @asked_by(CurvesQuery, "dataset", "extractor", "model")
 def curves(
     *,
@@ -36,10 +30,6 @@ def curves(
     the published results (docs/learning-curves.md).
     """
     answer = ask(learning_curves, {**asked, "limit": LARGEST_PAGE})
-    rows = answer.document["items"]
-    if form is not Format.TABLE:
-        emit(rows, columns_of(CurveRow), form, document=answer.document)
-        return
     shown = [
         {
             "dataset": row["dataset"],
@@ -52,9 +42,9 @@ def curves(
             "floor_deg": row["floor_error_deg"],
             "over_bound": row["over_bound"],
         }
-        for row in rows
+        for row in answer.document["items"]
     ]
-    emit(shown, _SHOWN, form)
+    emit_answer(answer, form, _SHOWN, rows=shown)
 
 
 def _poses(number: int | None) -> str:

@@ -13,10 +13,10 @@ from api.cli.commands import dataset_fetch
 from api.cli.completion import complete
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
 from api.cli.wrong_call import WrongCallError, given
 from api.schema import words
-from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery, SoldSensor
+from api.schema.datasets import Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.scores import ScoresQuery
 from api.schema.table import columns_of, csv_of
@@ -35,11 +35,7 @@ from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
 from files.atomic import replace_file
 
-app = typer.Typer(
-    help="List, describe, export or verify the standard data sets.",
-    add_completion=False,
-    rich_markup_mode=None,
-)
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 app.command("fetch")(dataset_fetch.fetch)
 
@@ -241,9 +237,7 @@ def realism(
     our precision. Published accuracies are converted to RMS. Differences of more than a factor of
     two are explained; data sets without a built sensor are called idealised.
     """
-    answer = ask(besides_built, asked)
-    shown = BUILT if form is Format.TABLE else columns_of(BuiltSensorRow)
-    emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
+    emit_answer(ask(besides_built, asked), form, BUILT, title="Data sets and built sensors")
 
 
 @app.command()
@@ -255,8 +249,7 @@ def sold(form: FormatOption = Format.TABLE) -> None:
     the reason names the depth or bench that agrees.
     """
     answer = ask(as_sold)
-    shown = SOLD if form is Format.TABLE else columns_of(SoldSensor)
-    emit(answer.rows(), shown, form, document=answer.document, title="Built sensors as sold")
+    emit_answer(answer, form, SOLD, title="Built sensors as sold")
     if form is Format.TABLE:
         say(answer.document["words"])
 

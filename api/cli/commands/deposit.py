@@ -18,11 +18,7 @@ from api.deposit.verification import UNSEEN
 from api.deposit.verification import verify as verified
 from benchmark.progress import console_progress
 
-app = typer.Typer(
-    help="Build, verify, upload or publish the archive bundle.",
-    add_completion=False,
-    rich_markup_mode=None,
-)
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
 BuiltBundle = Annotated[Path, typer.Option("--bundle", help="Directory of the bundle.")]

@@ -7,16 +7,13 @@ from typing import Annotated
 import typer
 
 from api.cli.asking import ask
-from api.cli.table_output import Format, FormatOption, emit, say
-from api.schema.directions import DirectionDuel, DirectionRow
+from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
+from api.schema.directions import DirectionDuel
 from api.schema.table import columns_of
 from api.service.directions import directions as service
 from survey_data.nearest import nearest_name
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-
-@app.command()
 def directions(
     direction: Annotated[
         str | None,
@@ -33,8 +30,7 @@ def directions(
     answer = ask(service)
     document = answer.document
     if direction is None:
-        shown = ("id", "verdict", "question") if form is Format.TABLE else columns_of(DirectionRow)
-        emit(answer.rows(), shown, form, document=document, title=document["words"])
+        emit_answer(answer, form, ("id", "verdict", "question"), title=document["words"])
         return
     found = {one["id"]: one for one in document["items"]}
     one = found.get(direction.upper())

@@ -9,7 +9,7 @@ import typer
 
 from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit_answer, say
 from api.figures.robustness import WORST
 from api.figures.trade_off import AXES
 from api.schema.measured_figures import GapQuery, RobustnessQuery, TradeOffQuery
@@ -18,11 +18,7 @@ from api.service import robustness as robustnesses
 from api.service import trade_off as trade_offs
 from api.service.documents import Document
 
-app = typer.Typer(
-    help="Print errors claimed, simulated and possible.",
-    add_completion=False,
-    rich_markup_mode=None,
-)
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 _GAP = ("detector", "mask", "study_rms_deg", "flight_error_deg", "own_error_deg", "bound_deg")
 _CELL = ("name", "state", "over_bound", "over_best", "data_sets", "answered")
@@ -82,9 +78,6 @@ def _emit(
     answer: Document, rows: Sequence[Mapping[str, Any]], shown: Sequence[str], form: Format
 ) -> None:
     """Print all rows as JSON or CSV, or some of them as a table with the figure's sentences."""
-    if form is not Format.TABLE:
-        emit(answer.rows(), answer.columns, form, document=answer.document)
-        return
-    emit(rows, shown, form)
-    for sentence in answer.document["text"]:
+    emit_answer(answer, form, shown, rows=rows)
+    for sentence in answer.document["text"] if form is Format.TABLE else ():
         say(sentence)

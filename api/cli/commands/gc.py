@@ -12,12 +12,9 @@ from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from benchmark.suites.tidying import tidy, would_tidy
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = ("scores", "pins", "kept", "freed")
 
 
-@app.command()
 def gc(
     *,
     yes: Annotated[

@@ -17,12 +17,9 @@ from starlette.types import ASGIApp
 from api.cli.table_output import Format, FormatOption, emit, emit_csv
 from api.cli.wrong_call import WrongCallError
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 _ACCEPT = {Format.TABLE: b"text/csv", Format.CSV: b"text/csv", Format.JSON: b"application/json"}
 
 
-@app.command("get")
 def get(
     address: Annotated[
         str,

@@ -15,10 +15,10 @@ from api.cli.measuring import (
     ManyWorkersOption,
 )
 from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, line_width, prose
+from api.cli.table_output import Format, FormatOption, emit, emit_answer, line_width, prose
 from api.cli.wrong_call import WrongCallError, given
 from api.schema import words
-from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
+from api.schema.boards import OverviewQuery
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
@@ -252,7 +252,7 @@ def _architectures(query: Asked, form: Format) -> None:
             typer.echo("\n".join(prose(heights["sentence"], line_width())), err=True)
         typer.echo(line, err=True)
     else:
-        emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
+        emit_answer(answer, form, ())
 
 
 def _overview(query: Asked, form: Format) -> None:
@@ -267,7 +267,7 @@ def _overview(query: Asked, form: Format) -> None:
     if form is Format.TABLE:
         typer.echo(overview_text(answer.document, line_width()), nl=False)
     else:
-        emit(rows, columns_of(PartOverview), form, document=answer.document)
+        emit_answer(answer, form, ())
 
 
 def _show(

@@ -20,13 +20,10 @@ if TYPE_CHECKING:
     from benchmark.contract import Cell
     from benchmark.suites.planning import CellPlan
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = ("why", "dataset", "cells")
 CSV_COLUMNS = ("dataset", "condition", "extractor", "model", "unit", "why")
 
 
-@app.command()
 def plan(
     *,
     suite: SuiteOption = "standard",

@@ -20,8 +20,6 @@ from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
 from benchmark.leaderboard import candidate
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = (
     *("new", "rank", "group", "extractor", "model", "own_error_deg", "low_deg", "high_deg"),
     *("on_bench_deg", "over_bound", "over_bound_unit", "availability", "false_detection_rate"),
@@ -30,7 +28,6 @@ COLUMNS = (
 MARK = "*"
 
 
-@app.command()
 def rank(
     algorithm: Annotated[
         str,

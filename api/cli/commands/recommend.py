@@ -10,10 +10,7 @@ from api.cli.wrong_call import WrongCallError, given
 from api.schema.requirements import Requirements
 from registry.requirements import PARAMETERS, SETTINGS
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-
-@app.command()
 @asked_by(
     Requirements,
     *("mission", *PARAMETERS, *SETTINGS, "edition", "sort", "include", "limit", "cursor"),

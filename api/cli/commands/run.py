@@ -35,8 +35,6 @@ from benchmark.suites.planning import cells_of
 from benchmark.suites.selection import suite as suite_named
 from registry.resolution import Resolution
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = (*(name for name in benchmark.COLUMNS if name != "latency_us"), "assumed")
 CSV_COLUMNS = ("study", *columns_of(Score), "assumed")
 
@@ -44,7 +42,6 @@ CSV_COLUMNS = ("study", *columns_of(Score), "assumed")
 SUITE_COLUMNS = ("unit", *benchmark.COLUMNS)
 
 
-@app.command()
 @asked_by(ScoresQuery, "condition")
 def run(
     study: Annotated[

@@ -21,8 +21,6 @@ from api.service import calibrations
 from benchmark.processes import take_time_to_end
 from files.atomic import sweep, temporary_directory
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 #: Of Uvicorn, with bounds for each client; a proxy knows them better (deploy/Caddyfile).
 _OPTIONS: dict[str, Any] = {
     "ws": "none",
@@ -40,7 +38,6 @@ _FIRST_HANDED = 3
 _WORKERS_END_S = 15.0
 
 
-@app.command()
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[

@@ -25,8 +25,6 @@ from registry.fidelity.grading import tally_text
 from registry.taxonomy import ATTRIBUTES
 from survey_data import labels
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = ("key", "year", "grade", "detector", "mask", "extractor", "model", "title")
 OWN = "own error"
 DETAILS = (
@@ -45,7 +43,6 @@ class StudyFormat(StrEnum):
     CSL = "csl"
 
 
-@app.command()
 @asked_by(StudiesQuery, *ATTRIBUTES, "grade", "state", "edition", "year_min", "year_max", "q")
 def studies(
     context: typer.Context,

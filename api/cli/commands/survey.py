@@ -15,11 +15,7 @@ from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from survey_data import FidelityReport, Problem, facts_manifest, labels
 from survey_data.descriptor import DATA_DIRECTORY
 
-app = typer.Typer(
-    help="Check the survey's tables, import or add studies.",
-    add_completion=False,
-    rich_markup_mode=None,
-)
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 app.command("import")(import_)
 app.command("add")(survey_add.add)
 app.command("remove")(survey_add.remove)

@@ -22,12 +22,9 @@ from benchmark.suites.planning import cells_of
 from benchmark.suites.selection import suite as suite_named
 from benchmark.suites.verification import verify as verified
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
 COLUMNS = ("file", "cell", "committed", "measured")
 
 
-@app.command()
 def verify(
     *,
     sample: Annotated[

@@ -13,9 +13,8 @@ import zipfile
 from pathlib import Path
 
 import pytest
-import typer
 
-from api.cli.commands.serve import app
+from api.cli.command_line import load
 from api.service import calibrations
 from api.web import requests
 from calibrate.uploaded import LONGEST_S
@@ -41,7 +40,7 @@ def commands():
 def test_the_command_is_understood(command):
     assert command[0].endswith("sunatlas")
     assert command[1] == "serve"
-    context = typer.main.get_command(app).make_context("serve", command[2:])
+    context = load("serve").make_context("serve", command[2:])
     assert context.params["workers"] == 2
     assert context.params["access_log"] is True
 
