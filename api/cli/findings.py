@@ -17,8 +17,7 @@ NAMES = ("methods", "constants", "benches", "sources", "poses")
 
 def findings(
     finding: Annotated[
-        str | None,
-        typer.Argument(help=f"Finding whose pairs to print: {', '.join(NAMES)}."),
+        str | None, typer.Argument(help=f"Finding whose pairs to print: {', '.join(NAMES)}.")
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:

@@ -48,18 +48,15 @@ ManyWorkersOption = Annotated[
 StoreOption = Annotated[
     Path | None,
     typer.Option(
-        help=(
-            "Local store for new results; by default $SUNATLAS_STORE or the user's cache directory."
-        ),
+        help="Local store for new results; by default $SUNATLAS_STORE or the user's cache "
+        "directory.",
         file_okay=False,
     ),
 ]
 SchedulerOption = Annotated[
     str | None,
     typer.Option(
-        help=(
-            "Address of a Dask scheduler, such as tcp://127.0.0.1:8786; needs the extra 'cluster'."
-        ),
+        help="Address of a Dask scheduler, such as tcp://127.0.0.1:8786; needs the extra 'cluster'."
     ),
 ]
 SuiteOption = Annotated[

@@ -174,11 +174,7 @@ def prose(words: str, width: int, then: str = "", first: str = "") -> list[str]:
 
 def _wrapped(words: str, width: int, first: str, then: str) -> list[str]:
     return textwrap.wrap(
-        words,
-        width,
-        initial_indent=first,
-        subsequent_indent=then,
-        break_on_hyphens=False,
+        words, width, initial_indent=first, subsequent_indent=then, break_on_hyphens=False
     )
 
 

@@ -35,13 +35,7 @@ from benchmark import datasets
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
 from files.atomic import replace_all, require_replaceable
-from files.checksums import (
-    CHECKSUMS,
-    contents,
-    read_checksums,
-    sha256,
-    write_checksums,
-)
+from files.checksums import CHECKSUMS, contents, read_checksums, sha256, write_checksums
 from files.manifest import manifest_digest
 from files.reading import FileRefusedError
 from survey_data.descriptor import file_name

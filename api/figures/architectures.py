@@ -7,15 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from api.figures.figure import Figure
-from api.figures.specification import (
-    AXIS,
-    CATEGORIES,
-    HOVER,
-    TEXT,
-    axis,
-    mark,
-    specification,
-)
+from api.figures.specification import AXIS, CATEGORIES, HOVER, TEXT, axis, mark, specification
 
 NAME = "architectures"
 _FRONT, _BOUND = CATEGORIES[0], CATEGORIES[1]

@@ -14,16 +14,7 @@ from api.addresses import architecture_page, dataset_page
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure, in_words
-from api.figures.specification import (
-    HOVER,
-    LINE,
-    SURFACE,
-    Plotly,
-    axis,
-    mark,
-    scale,
-    specification,
-)
+from api.figures.specification import HOVER, LINE, SURFACE, Plotly, axis, mark, scale, specification
 from api.schema.figures import PairRow
 from api.schema.table import columns_of
 from benchmark.leaderboard.summaries import digits
@@ -41,13 +32,7 @@ _SIGNS = {"measured": "•", "unknown": "?", "unstudied": "", "impossible": "×"
 
 
 def matrix_figure(
-    facts: Facts,
-    addresses: Addresses,
-    where: Where,
-    evidence: Evidence,
-    *,
-    rows: str,
-    columns: str,
+    facts: Facts, addresses: Addresses, where: Where, evidence: Evidence, *, rows: str, columns: str
 ) -> Figure:
     """Return the matrix of the studies that meet `where`, by two attributes or levels.
 
@@ -221,11 +206,7 @@ def _plotly(
         height=110 + 30 * len(rows),
         narrowest=160 + 42 * across,
         xaxis=axis(
-            side="top",
-            tickangle=-40,
-            tickvals=shared["x"],
-            ticktext=names[1],
-            showgrid=False,
+            side="top", tickangle=-40, tickvals=shared["x"], ticktext=names[1], showgrid=False
         ),
         yaxis=axis(autorange="reversed", tickvals=shared["y"], ticktext=names[0], showgrid=False),
     )

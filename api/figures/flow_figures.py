@@ -47,9 +47,7 @@ CHAINS: Mapping[str, Chain] = MappingProxyType(
             "From what a study wants to improve, through its sensor, to its calibration.",
         ),
         "task": Chain(
-            "Tasks",
-            ("task", "detector", "mask"),
-            "Which sensors studies build for which task.",
+            "Tasks", ("task", "detector", "mask"), "Which sensors studies build for which task."
         ),
         "aggregate": Chain(
             "Cross-analysis, aggregated",
@@ -64,11 +62,7 @@ _PINNED = ("accuracy",)  # from coarse to ultra fine, whatever crosses
 
 
 def flow_figure(
-    name: str,
-    facts: Facts,
-    addresses: Addresses,
-    where: Where,
-    counting: Counting = "studies",
+    name: str, facts: Facts, addresses: Addresses, where: Where, counting: Counting = "studies"
 ) -> Figure:
     """Return a Sankey diagram of the studies that meet `where`.
 
@@ -86,12 +80,7 @@ def flow_figure(
 
 
 def answer_figure(
-    answer: Answer,
-    facts: Facts,
-    page: str,
-    counting: Counting = "studies",
-    *,
-    grouped: bool = True,
+    answer: Answer, facts: Facts, page: str, counting: Counting = "studies", *, grouped: bool = True
 ) -> Figure:
     """Return a Sankey diagram of the studies behind an answer.
 

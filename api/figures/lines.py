@@ -34,13 +34,7 @@ class Line:
 
 
 def line_figure(
-    name: str,
-    title: str,
-    lines: Sequence[Line],
-    across: str,
-    up: str,
-    *,
-    log_across: bool = False,
+    name: str, title: str, lines: Sequence[Line], across: str, up: str, *, log_across: bool = False
 ) -> Figure:
     """Return lines over one pair of axes, with a row of the table for each place.
 

@@ -138,13 +138,7 @@ def _said(first: int, last: int) -> str:
 
 
 def _row(part: str, value: str, stack: str, keys: Sequence[str]) -> dict[str, Any]:
-    return {
-        "part": part,
-        "value": value,
-        "stack": stack,
-        "count": len(keys),
-        "studies": list(keys),
-    }
+    return {"part": part, "value": value, "stack": stack, "count": len(keys), "studies": list(keys)}
 
 
 def _plotly(

@@ -7,16 +7,7 @@ from typing import Any
 
 from api.addresses import architecture_page, dataset_page
 from api.figures.figure import Figure
-from api.figures.specification import (
-    HOVER,
-    TEXT,
-    UNKNOWN,
-    axis,
-    colour,
-    faint,
-    mark,
-    specification,
-)
+from api.figures.specification import HOVER, TEXT, UNKNOWN, axis, colour, faint, mark, specification
 from api.schema.measured_figures import TradeOffRow
 from api.schema.table import columns_of
 from benchmark.leaderboard.summaries import digits
@@ -140,12 +131,7 @@ def _trace(rows: Sequence[Row], across: str, name: str, look: Mapping[str, Any])
 
 
 def _text(  # noqa: PLR0917 - what a sentence each says
-    rows: Sequence[Row],
-    across: str,
-    level: str,
-    timed_on: str | None,
-    left_out: int,
-    folded: int,
+    rows: Sequence[Row], across: str, level: str, timed_on: str | None, left_out: int, folded: int
 ) -> Iterator[str]:
     column, words, unit = AXES[across]
     of = {status: [row for row in rows if row["status"] == status] for status in _LOOKS}

@@ -13,13 +13,7 @@ from api.schema.words import DatasetName
 from api.service import datasets as service
 from api.web.answers import AnswerRoute, Columns, Picture, StrictRoute, link
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.static_files import (
-    PAGE,
-    file_of,
-    kept,
-    page_address,
-    styles,
-)
+from api.web.static_files import PAGE, file_of, kept, page_address, styles
 
 router = APIRouter(prefix="/v1/datasets", route_class=AnswerRoute, dependencies=[NO_PARAMETERS])
 static = APIRouter(route_class=StrictRoute, include_in_schema=False)
@@ -54,9 +48,7 @@ def dataset_preview(name: Name) -> Picture:
 
 
 @router.get(
-    "/{name}/errors.parquet",
-    summary="Errors of each sample, as a file",
-    response_class=Columns,
+    "/{name}/errors.parquet", summary="Errors of each sample, as a file", response_class=Columns
 )
 def errors_file(known: Known, name: Name) -> Response:
     """Return the published errors of all samples as Parquet.

@@ -49,9 +49,7 @@ async def dataset_croissant(request: Request, known: Known, name: Name) -> Respo
 
 
 @router.get(
-    "/datasets/{name}/linkset.json",
-    summary="Links of a data set's page",
-    response_class=LinkSet,
+    "/datasets/{name}/linkset.json", summary="Links of a data set's page", response_class=LinkSet
 )
 async def dataset_linkset(request: Request, known: Known, name: Name) -> LinkSet:
     """All typed links of its page, content and metadata (Signposting, RFC 9264)."""
@@ -70,9 +68,7 @@ async def leaderboard_croissant(request: Request, known: Known) -> Response:
 
 
 @router.get(
-    "/leaderboard/linkset.json",
-    summary="Links of the leaderboard's page",
-    response_class=LinkSet,
+    "/leaderboard/linkset.json", summary="Links of the leaderboard's page", response_class=LinkSet
 )
 async def leaderboard_linkset(request: Request) -> LinkSet:
     """All typed links of its page, content and metadata (Signposting, RFC 9264)."""

@@ -129,10 +129,7 @@ TABLES = (
     Table("/datasets", datasets.datasets, Datasets | Selected, "Data sets"),
     Table("/datasets/{name}", datasets.dataset, DatasetDetail, "A data set"),
     Table(
-        "/datasets/{name}/errors",
-        datasets.errors,
-        SampleErrors | Selected,
-        "Errors of each sample",
+        "/datasets/{name}/errors", datasets.errors, SampleErrors | Selected, "Errors of each sample"
     ),
     Table("/realism", datasets.realism, Realism, "Data sets compared with built sensors"),
     Table("/realism/sold", datasets.as_sold, SoldSensors, "Built sensors as they are sold"),
@@ -167,10 +164,7 @@ TABLES = (
     Table("/claims", claims.claims, Claims | Selected, "Claims of the survey, tested"),
     Table("/claims/{id}", claims.claim, ClaimDetail, "A claim"),
     Table(
-        "/directions",
-        directions.directions,
-        Directions,
-        "Future directions of the survey, decided",
+        "/directions", directions.directions, Directions, "Future directions of the survey, decided"
     ),
     Table("/compare", comparing.compare, Comparison, "Comparison"),
     Table(

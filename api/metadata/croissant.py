@@ -38,11 +38,7 @@ Entity = dict[str, Any]
 
 
 def file_object(
-    name: str,
-    address: str,
-    media_types: Sequence[str],
-    description: str,
-    content: bytes,
+    name: str, address: str, media_types: Sequence[str], description: str, content: bytes
 ) -> Entity:
     """Return a file of a data set.
 

@@ -8,13 +8,7 @@ from typing import Any
 
 from api.metadata.fields import fields
 from api.schema.samples import SampleError
-from benchmark.results.samples import (
-    COLUMNS,
-    CONDITION,
-    DIRECTION_COLUMNS,
-    datasets,
-    path_of,
-)
+from benchmark.results.samples import COLUMNS, CONDITION, DIRECTION_COLUMNS, datasets, path_of
 
 FOLDER = "benchmark"
 

@@ -105,10 +105,7 @@ def _ways(known: Knowledge, dataset: str | None) -> list[str]:
 
 def _chart(items: list[Mapping[str, Any]], names: list[str]) -> Figure:
     lines = [
-        Line(
-            name,
-            [((r["inner_deg"] + r["outer_deg"]) / 2, r["rms_deg"]) for r in item["rings"]],
-        )
+        Line(name, [((r["inner_deg"] + r["outer_deg"]) / 2, r["rms_deg"]) for r in item["rings"]])
         for item, name in zip(items, names, strict=True)
         if item["rings"]
     ]

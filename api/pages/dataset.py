@@ -96,9 +96,7 @@ async def datasets(known: Known) -> View:
 
 @router.page("/datasets/{name}", figures=True)
 async def dataset(
-    known: Known,
-    name: Annotated[words.DatasetName, Path()],
-    query: Annotated[BoardQuery, Query()],
+    known: Known, name: Annotated[words.DatasetName, Path()], query: Annotated[BoardQuery, Query()]
 ) -> View:
     """One data set; its twins are its card with the board of the condition."""
     card = known.measurements.card(name)

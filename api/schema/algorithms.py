@@ -7,9 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from api.schema.base import Shape, SortedQuestion, example, page_of
-from api.schema.parameters import (
-    GIVEN,
-)
+from api.schema.parameters import GIVEN
 
 Role = Literal["extractor", "model"]
 

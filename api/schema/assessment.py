@@ -7,10 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from api.schema.base import OpenShape, Shape, SortedQuestion, TableQuestion, example, page_of
-from api.schema.parameters import (
-    Several,
-    several,
-)
+from api.schema.parameters import Several, several
 from api.schema.words import ExtractorName, MethodName, Series, SweepName
 
 Agreement = Literal["agrees", "near", "opposed", "not judged", "not measured"]
@@ -54,10 +51,8 @@ class JudgedProperty(Shape):
     survey: int
     measured: int | None = Field(description="Measured score; null if not judged or not measured.")
     agreement: Agreement = Field(
-        description=(
-            "agrees, near (one apart), opposed (two apart), not measured, or not judged: "
-            "the measurement cannot contradict the survey."
-        )
+        description="agrees, near (one apart), opposed (two apart), not measured, or not judged: "
+        "the measurement cannot contradict the survey."
     )
     value: float | None = Field(description="The measured quantity.")
     reason: str = Field(description="Reason if not judged, not measured or not found.")

@@ -86,10 +86,8 @@ class TableQuestion(Question):
 
     format: Annotated[Literal["json", "csv"] | None, GIVEN] = Field(
         None,
-        description=(
-            "Response format; must be one the Accept header allows. "
-            "By default the Accept header selects it."
-        ),
+        description="Response format; must be one the Accept header allows. By default the Accept "
+        "header selects it.",
     )
     safe: bool = Field(default=False, description="Escape cells that a spreadsheet would run.")
 
@@ -129,11 +127,9 @@ class CitedQuestion(TableQuestion):
 
     format: Annotated[_CitedFormat, GIVEN] = Field(  # type: ignore[assignment]  # more than a table
         None,
-        description=(
-            "Response format: JSON, CSV, or references to studies with a known title as "
-            "BibTeX, RIS or CSL JSON; must be one the Accept header allows. By default "
-            "the header decides."
-        ),
+        description="Response format: JSON, CSV, or references to studies with a known title as "
+        "BibTeX, RIS or CSL JSON; must be one the Accept header allows. By default the header "
+        "decides.",
     )
 
 
@@ -142,10 +138,8 @@ class DrawnQuestion(TableQuestion):
 
     format: Annotated[Literal["json", "csv", "plotly"] | None, GIVEN] = Field(  # type: ignore[assignment]  # as above
         None,
-        description=(
-            "Response format: JSON, CSV, or the figure as Plotly JSON (`data` and `layout`); must "
-            "be one the Accept header allows. By default the header decides."
-        ),
+        description="Response format: JSON, CSV, or the figure as Plotly JSON (`data` and "
+        "`layout`); must be one the Accept header allows. By default the header decides.",
     )
 
 

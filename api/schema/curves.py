@@ -7,10 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from api.schema.base import Shape, SortedQuestion, example, page_of
-from api.schema.parameters import (
-    Several,
-    several,
-)
+from api.schema.parameters import Several, several
 from api.schema.words import DatasetName, ExtractorName, ModelName
 
 
@@ -38,10 +35,8 @@ class CurveRow(Shape):
     answers_poses: int | None = Field(description="Poses needed by availability alone.")
     poses: int = Field(description="Poses of the calibration split.")
     floor: Literal["fitted", "all", "none"] = Field(
-        description=(
-            "fitted: asymptote f of the fitted squared error f^2 + a poses^-b; all: error "
-            "with all poses; none: more than all poses are needed."
-        )
+        description="fitted: asymptote f of the fitted squared error f^2 + a poses^-b; all: error "
+        "with all poses; none: more than all poses are needed."
     )
     floor_error_deg: float | None = Field(description="Error floor, RMS over units.")
     over_bound: float | None = Field(description="Error floor divided by the bound.")

@@ -7,10 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from api.schema.base import OpenShape, Shape, SortedQuestion, TableQuestion, example, page_of
-from api.schema.parameters import (
-    Several,
-    several,
-)
+from api.schema.parameters import Several, several
 from api.schema.table import AS_TEXT
 from api.schema.words import DatasetName
 

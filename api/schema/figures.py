@@ -31,10 +31,8 @@ class MatrixQuery(DrawnQuestion, StudyFilters):
     rows: Level = Field(ROWS, description="Attribute of the rows.")
     columns: Level = Field(
         COLUMNS,
-        description=(
-            "Attribute of the columns; the same attribute as the rows shows which values "
-            "occur together."
-        ),
+        description="Attribute of the columns; the same attribute as the rows shows which values "
+        "occur together.",
     )
 
 

@@ -18,11 +18,8 @@ class FlowsQuery(StudyFilters):
 
     counting: Literal["studies", "fractional"] = Field(
         "studies",
-        description=(
-            "studies: number of distinct studies per link. fractional: each study has "
-            "weight one, divided over the combinations of its values, so that inflow "
-            "equals outflow."
-        ),
+        description="studies: number of distinct studies per link. fractional: each study has "
+        "weight one, divided over the combinations of its values, so that inflow equals outflow.",
     )
     grouped: Flag = Field(False, description="Show categories and families.")
 

@@ -124,9 +124,8 @@ Limit = Annotated[
 ]
 SORT = Field(
     default=None,
-    description=(
-        "Column to sort by; - in front sorts in descending order. Rows without a value come last."
-    ),
+    description="Column to sort by; - in front sorts in descending order. Rows without a value "
+    "come last.",
 )
 FIELDS = several("Columns to return. JSON items are then flat table rows.")
 Cursor = Annotated[

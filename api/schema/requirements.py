@@ -73,10 +73,8 @@ class Requirements(OfEdition):
         None,
         gt=0,
         le=180,
-        description=(
-            "Maximum RMS error, degrees: reported (converted to RMS), or measured over the "
-            "required field of view and conditions."
-        ),
+        description="Maximum RMS error, degrees: reported (converted to RMS), or measured over "
+        "the required field of view and conditions.",
     )
     min_fov_deg: Number = Field(None, gt=0, le=360, description="Minimum full field of view.")
     max_latency_us: Number = Field(
@@ -105,43 +103,35 @@ class Requirements(OfEdition):
         None,
         ge=0,
         le=180,
-        description=(
-            "Error of your calibration bench, degrees. Without it limits are judged on own errors, "
-            "and the answer says which bench they take."
-        ),
+        description="Error of your calibration bench, degrees. Without it limits are judged on "
+        "own errors, and the answer says which bench they take.",
     )
     confidence: Number = Field(
         None,
         ge=0.5,
         le=0.999,
-        description=(
-            "Share of sensor units and benches that must meet the maximum error; default 0.9."
-        ),
+        description="Share of sensor units and benches that must meet the maximum error; default "
+        "0.9.",
     )
     processor: Annotated[
         str | None, Field(min_length=1, max_length=60), GIVEN, WithJsonSchema(form())
     ] = Field(
         None,
-        description=(
-            f"Your processor: {', '.join(processors())}; or its time relative to the reference."
-        ),
+        description=f"Your processor: {', '.join(processors())}; or its time relative to the "
+        "reference.",
     )
     evidence: Annotated[str | None, OneOf(lambda: EVIDENCE), GIVEN] = Field(
         None, description="Evidence that must meet all requirements; default any of the two kinds."
     )
     level: Annotated[str | None, OneOf(lambda: LEVELS), GIVEN] = Field(
         None,
-        description=(
-            "Error that limits are judged by: flight (calibrated on the ground once, then flown), "
-            "the default, or own (what sensor and method achieve)."
-        ),
+        description="Error that limits are judged by: flight (calibrated on the ground once, then "
+        "flown), the default, or own (what sensor and method achieve).",
     )
     sort: Sort = Field(
         "evidence",
-        description=(
-            "Order. evidence: by evidence, then error or the measure of the task. error: by error. "
-            "studies: by number of studies and products. What nobody built is always last."
-        ),
+        description="Order. evidence: by evidence, then error or the measure of the task. error: "
+        "by error. studies: by number of studies and products. What nobody built is always last.",
     )
     include: Annotated[Several[Included], BeforeValidator(_split)] = several(
         "More of the answer: calibrations of each architecture, paths of the studies, designs (all "

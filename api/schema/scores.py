@@ -102,18 +102,13 @@ class Rank(OpenShape):
     """Rank in a data set and condition."""
 
     rank: int | None = Field(
-        description=(
-            "Rank by own error, or by the error over the requested field. Pipelines below "
-            "95 % availability rank last; null without an error."
-        )
+        description="Rank by own error, or by the error over the requested field. Pipelines below "
+        "95 % availability rank last; null without an error."
     )
     group: int | None = Field(
         None,
-        description=(
-            "1 for pipelines that a paired test over units cannot separate from the "
-            "leader, 2 for the next such group, and so on; null with fewer than five "
-            "units."
-        ),
+        description="1 for pipelines that a paired test over units cannot separate from the "
+        "leader, 2 for the next such group, and so on; null with fewer than five units.",
     )
     tied: bool = Field(description="Whether the rank is shared.")
 
@@ -129,10 +124,8 @@ class LeaderboardRow(Score, Rank):
     on_bench_deg: float | None = Field(None, description="Error expected on the standard bench.")
     on_bench_basis: Literal["measured", "estimated"] | None = Field(
         None,
-        description=(
-            "measured on twenty random benches, or estimated as the root sum of squares "
-            "of own error and bench error."
-        ),
+        description="measured on twenty random benches, or estimated as the root sum of squares "
+        "of own error and bench error.",
     )
     low_deg: float | None = Field(description="Smallest error over units; null with one unit.")
     high_deg: float | None = Field(description="Largest error over units.")
@@ -221,17 +214,15 @@ class LeaderboardQuery(SortedQuestion, rows=LeaderboardRow):
     studied: Flag = Field(default=False, description="Only those that studies used.")
     field_deg: Annotated[str | None, OneOf(lambda: FIELD_EDGES), GIVEN] = Field(
         None,
-        description=(
-            "Rank by the error within this off-axis angle, degrees, weighted by solid angle."
-        ),
+        description="Rank by the error within this off-axis angle, degrees, weighted by solid "
+        "angle.",
     )
     max_error_deg: Annotated[float | None, NUMBER] = Field(
         None,
         gt=0,
         le=180,
-        description=(
-            "Rank by the field of view within which the RMS error is at most this, degrees."
-        ),
+        description="Rank by the field of view within which the RMS error is at most this, "
+        "degrees.",
     )
 
 

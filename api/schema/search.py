@@ -20,9 +20,8 @@ class SearchQuery(TableQuestion):
     q: Annotated[str, GIVEN] = Field(
         min_length=1,
         max_length=200,
-        description=(
-            "Search words. Case, accents, endings and small spelling mistakes are tolerated."
-        ),
+        description="Search words. Case, accents, endings and small spelling mistakes are "
+        "tolerated.",
     )
     kind: Several[Kind] = several("Only results of this kind.")
     limit: Limit = 20

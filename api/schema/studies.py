@@ -16,12 +16,7 @@ from api.schema.base import (
     example,
     page_of,
 )
-from api.schema.parameters import (
-    GIVEN,
-    WHOLE,
-    Several,
-    several,
-)
+from api.schema.parameters import GIVEN, WHOLE, Several, several
 from api.schema.table import AS_TEXT, ColumnEach
 from registry.fidelity.particulars import Purpose
 from registry.fidelity.runnable import Part
@@ -202,10 +197,8 @@ class Reported(Shape):
     )
     label: str = Field(description="Description of the number.", examples=["1-sigma precision"])
     rms_deg: float = Field(
-        description=(
-            "The number converted to RMS: 3 sigma and maximum divided by 3, 95 % by 1.96, "
-            "mean by 0.7979, unspecified as printed."
-        )
+        description="The number converted to RMS: 3 sigma and maximum divided by 3, 95 % by 1.96, "
+        "mean by 0.7979, unspecified as printed."
     )
 
 
@@ -279,9 +272,8 @@ class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
         None,
         min_length=1,
         max_length=200,
-        description=(
-            "Search words; all must occur in key, title, authors or venue. Case does not matter."
-        ),
+        description="Search words; all must occur in key, title, authors or venue. Case does not "
+        "matter.",
     )
 
 

@@ -36,9 +36,7 @@ class Knowledge:
     """
 
     def __init__(
-        self,
-        measurements: Measurements | None = None,
-        survey: Knowledge | None = None,
+        self, measurements: Measurements | None = None, survey: Knowledge | None = None
     ) -> None:
         self.measurements = Measurements() if measurements is None else measurements
         self._survey = survey
@@ -84,10 +82,7 @@ class Knowledge:
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import (  # noqa: PLC0415 - loads the simulator
-            scorable_plan,
-            study_plans,
-        )
+        from benchmark.plan.combinations import scorable_plan, study_plans  # noqa: PLC0415 - loads the simulator
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         if self._survey is None:

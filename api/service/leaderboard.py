@@ -113,9 +113,6 @@ def leaderboard_of_dataset(
 
 def findings(known: Knowledge) -> tuple[Finding, ...]:
     """Return the findings of the published record, which is of standard data sets."""
-    from benchmark.leaderboard.findings import (  # noqa: PLC0415 - needs every experiment
-        FindingsRecord,
-        findings_of,
-    )
+    from benchmark.leaderboard.findings import FindingsRecord, findings_of  # noqa: PLC0415 - needs every experiment
 
     return findings_of(FindingsRecord.published(), known.standard_resolutions)

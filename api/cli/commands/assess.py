@@ -22,11 +22,7 @@ _MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not judged": ".", "not me
 
 
 @asked_by(AssessmentQuery, "method")
-def assess(
-    *,
-    asked: Asked,
-    form: FormatOption = Format.TABLE,
-) -> None:
+def assess(*, asked: Asked, form: FormatOption = Format.TABLE) -> None:
     """Compare the survey's scores of extractors with ours.
 
     19 methods and 21 properties, scored 2 (yes), 1 (partly) or 0 (no). A cell shows the survey's

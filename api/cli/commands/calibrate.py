@@ -25,29 +25,23 @@ def calibrate(
     config: Annotated[
         Path | None,
         typer.Option(
-            help=(
-                "Configuration with the meaning of the columns; by default guessed from "
-                "their names."
-            )
+            help="Configuration with the meaning of the columns; by default guessed from their "
+            "names."
         ),
     ] = None,
     init: Annotated[
         Path | None,
         typer.Option(
-            help=(
-                "Write a commented configuration, guessed from the header, to this file and stop."
-            )
+            help="Write a commented configuration, guessed from the header, to this file and stop."
         ),
     ] = None,
     onto: Annotated[
         Path | None,
         typer.Option(
-            help=(
-                "Correct this calibration (JSON of an earlier run) with a few new poses instead of "
-                "fitting a new one: by gains, offsets, a scale or a turn, if poses left out show "
-                "that it is better. The files are read by its settings; of the other options, only "
-                "--out, --name and --require go with it."
-            )
+            help="Correct this calibration (JSON of an earlier run) with a few new poses instead "
+            "of fitting a new one: by gains, offsets, a scale or a turn, if poses left out show "
+            "that it is better. The files are read by its settings; of the other options, only "
+            "--out, --name and --require go with it."
         ),
     ] = None,
     out: Annotated[Path, typer.Option(help="Output directory for report, JSON and code.")] = Path(
@@ -66,16 +60,17 @@ def calibrate(
     require: Annotated[
         list[str] | None,
         typer.Option(
-            help="Largest error allowed, such as 0.1deg@3sigma,60deg: limit in deg, arcmin, arcsec "
-            "or mrad; share of directions (1sigma, 2sigma, 3sigma, a percentage, or rms); largest "
-            "off-axis angle, half of the field of view (all poses without it). May be repeated."
+            help="Largest error allowed, such as 0.1deg@3sigma,60deg: limit in deg, arcmin, "
+            "arcsec or mrad; share of directions (1sigma, 2sigma, 3sigma, a percentage, or rms); "
+            "largest off-axis angle, half of the field of view (all poses without it). May be "
+            "repeated."
         ),
     ] = None,
     factory: Annotated[
         Path | None,
         typer.Option(
-            help="Compare with the factory's calibration: a table of readings and directions, or a "
-            "JSON of an earlier run."
+            help="Compare with the factory's calibration: a table of readings and directions, or "
+            "a JSON of an earlier run."
         ),
     ] = None,
     apply: Annotated[
@@ -156,14 +151,8 @@ def calibrate(
 
 def _checked(stated: list[str], out: Path) -> tuple[Any, ...]:
     """Return requirements; one that is none, and a place that cannot be written, end the call."""
-    from calibrate.report.requirement import (  # noqa: PLC0415 - SciPy
-        RequirementError,
-        requirement,
-    )
-    from files.atomic import (  # noqa: PLC0415 - as above
-        UnreplaceableError,
-        require_replaceable_directory,
-    )
+    from calibrate.report.requirement import RequirementError, requirement  # noqa: PLC0415 - SciPy
+    from files.atomic import UnreplaceableError, require_replaceable_directory  # noqa: PLC0415 - as above
 
     try:
         require_replaceable_directory(out)

@@ -18,9 +18,7 @@ class Shell(StrEnum):
     FISH = "fish"
 
 
-def completion(
-    shell: Annotated[Shell, typer.Argument(help="Shell.")],
-) -> None:
+def completion(shell: Annotated[Shell, typer.Argument(help="Shell.")]) -> None:
     """Print the shell completion script.
 
     Bash: `eval "$(sunatlas completion bash)"` in ~/.bashrc. Zsh: the same with zsh in ~/.zshrc,

@@ -17,11 +17,7 @@ _SHOWN = (
 
 
 @asked_by(CurvesQuery, "dataset", "extractor", "model")
-def curves(
-    *,
-    asked: Asked,
-    form: FormatOption = Format.TABLE,
-) -> None:
+def curves(*, asked: Asked, form: FormatOption = Format.TABLE) -> None:
     """Show how many calibration poses pipelines need.
 
     needed: number of poses with which half of the random draws are within 10 % of the error floor

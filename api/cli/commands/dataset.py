@@ -47,8 +47,7 @@ BUILT = ("dataset", "rms_deg", "id", "name", "accuracy_rms_deg", "accuracy_ratio
 SOLD = ("hardware", "name", "depth", "stated_deg", "simulated_deg", "ratio")
 
 NameArgument = Annotated[
-    str,
-    typer.Argument(autocompletion=complete(words.DatasetName), help="Name of the data set."),
+    str, typer.Argument(autocompletion=complete(words.DatasetName), help="Name of the data set.")
 ]
 
 
@@ -97,12 +96,10 @@ def export(
     out: Annotated[Path, typer.Option(help="Output directory.")],
     asked: Asked,
     split: Annotated[
-        list[str] | None,
-        typer.Option(help="Only calibration or test; may be repeated."),
+        list[str] | None, typer.Option(help="Only calibration or test; may be repeated.")
     ] = None,
     n: Annotated[
-        int | None,
-        typer.Option("--n", min=1, help="Only the first N samples of each split."),
+        int | None, typer.Option("--n", min=1, help="Only the first N samples of each split.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier export.")] = False,
     form: FormatOption = Format.TABLE,
@@ -144,9 +141,8 @@ def errors(
     out: Annotated[
         Path | None,
         typer.Option(
-            help=(
-                "Output file: CSV, or .parquet for the published file with all pipelines and units."
-            ),
+            help="Output file: CSV, or .parquet for the published file with all pipelines and "
+            "units."
         ),
     ] = None,
     form: FormatOption = Format.TABLE,
@@ -226,11 +222,7 @@ def coverage(form: FormatOption = Format.TABLE) -> None:
 
 @app.command()
 @asked_by(RealismQuery, "dataset")
-def realism(
-    *,
-    asked: Asked,
-    form: FormatOption = Format.TABLE,
-) -> None:
+def realism(*, asked: Asked, form: FormatOption = Format.TABLE) -> None:
     """Compare each data set with built sensors and their published figures.
 
     rms_deg is the RMS of unit 0 of the best pipeline under nominal conditions; its repeatability is
@@ -262,8 +254,7 @@ def preview(
     condition: Annotated[
         str | None,
         typer.Option(
-            autocompletion=complete(words.Condition),
-            help="Condition; by default the first.",
+            autocompletion=complete(words.Condition), help="Condition; by default the first."
         ),
     ] = None,
     overlay: Annotated[
@@ -338,8 +329,7 @@ def pin(
     ] = None,
     *,
     check: Annotated[
-        bool,
-        typer.Option("--check", help="Generate the data again and compare; write nothing."),
+        bool, typer.Option("--check", help="Generate the data again and compare; write nothing.")
     ] = False,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
 ) -> None:

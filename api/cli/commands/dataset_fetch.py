@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 def fetch(
     context: typer.Context,
     name: Annotated[
-        str | None,
-        typer.Argument(help="Name of the set; without one they are listed."),
+        str | None, typer.Argument(help="Name of the set; without one they are listed.")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Output directory; by default the set's name.")

@@ -40,8 +40,7 @@ def build(
     code: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE",
-            help="Source archive of this version, where this is no checkout.",
+            metavar="FILE", help="Source archive of this version, where this is no checkout."
         ),
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Do not show progress.")] = False,
@@ -57,11 +56,7 @@ def build(
     rows = [
         {"file": name, "bytes": (bundle.directory / name).stat().st_size} for name in bundle.files
     ]
-    document = {
-        "directory": str(bundle.directory),
-        "archive": str(bundle.archive),
-        "files": rows,
-    }
+    document = {"directory": str(bundle.directory), "archive": str(bundle.archive), "files": rows}
     emit(rows, ("file", "bytes"), form, document=document, title=str(bundle.directory))
     total = sum((bundle.directory / name).stat().st_size for name in bundle.files)
     typer.echo(f"built {bundle.directory} ({total / 1e6:.0f} MB) and {bundle.archive}", err=True)
@@ -77,8 +72,7 @@ def verify(
         bool, typer.Option("--quick", help="Do not generate the samples again.")
     ] = False,
     alone: Annotated[
-        bool,
-        typer.Option("--alone", help="Check the bundle without this version's data."),
+        bool, typer.Option("--alone", help="Check the bundle without this version's data.")
     ] = False,
     form: FormatOption = Format.TABLE,
 ) -> None:

@@ -16,8 +16,7 @@ from survey_data.nearest import nearest_name
 
 def directions(
     direction: Annotated[
-        str | None,
-        typer.Argument(metavar="[ID]", help="Direction to show in detail, such as D05."),
+        str | None, typer.Argument(metavar="[ID]", help="Direction to show in detail, such as D05.")
     ] = None,
     *,
     form: FormatOption = Format.TABLE,

@@ -22,8 +22,7 @@ _ACCEPT = {Format.TABLE: b"text/csv", Format.CSV: b"text/csv", Format.JSON: b"ap
 
 def get(
     address: Annotated[
-        str,
-        typer.Argument(help="Address, such as '/v1/flows/error?task=Accuracy'."),
+        str, typer.Argument(help="Address, such as '/v1/flows/error?task=Accuracy'.")
     ],
     form: FormatOption = Format.TABLE,
 ) -> None:

@@ -20,8 +20,7 @@ def guide() -> None:
 @app.command()
 def build(
     out: Annotated[
-        Path | None,
-        typer.Option(help="Output directory; an earlier guide is replaced."),
+        Path | None, typer.Option(help="Output directory; an earlier guide is replaced.")
     ] = None,
     *,
     strict: Annotated[

@@ -10,10 +10,7 @@ import typer
 from api.cli import findings
 from api.cli.boards import architectures_text, overview_text
 from api.cli.completion import complete
-from api.cli.measuring import (
-    AVAILABLE_WORKERS,
-    ManyWorkersOption,
-)
+from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, emit_answer, line_width, prose
 from api.cli.wrong_call import WrongCallError, given
@@ -79,15 +76,14 @@ def leaderboard(
     condition: Annotated[
         list[str] | None,
         typer.Option(
-            autocompletion=complete(words.Condition),
-            help="Only this condition; may be repeated.",
+            autocompletion=complete(words.Condition), help="Only this condition; may be repeated."
         ),
     ] = None,
     field: Annotated[
         int | None,
         typer.Option(
             help="Rank by the error within this angle of the boresight, degrees: one of "
-            f"{', '.join(map(str, EDGES_DEG[1:]))}.",
+            f"{', '.join(map(str, EDGES_DEG[1:]))}."
         ),
     ] = None,
     max_error: Annotated[
@@ -98,8 +94,7 @@ def leaderboard(
         ),
     ] = None,
     check: Annotated[
-        bool,
-        typer.Option("--check", help="Measure everything again and compare; write nothing."),
+        bool, typer.Option("--check", help="Measure everything again and compare; write nothing.")
     ] = False,
     stored: Annotated[
         bool,

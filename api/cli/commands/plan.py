@@ -8,11 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from api.cli.measuring import (
-    StoreOption,
-    SuiteOption,
-    every_store,
-)
+from api.cli.measuring import StoreOption, SuiteOption, every_store
 from api.cli.table_output import Format, FormatOption, emit
 from benchmark.suites.selection import suite as suite_named
 
@@ -25,10 +21,7 @@ CSV_COLUMNS = ("dataset", "condition", "extractor", "model", "unit", "why")
 
 
 def plan(
-    *,
-    suite: SuiteOption = "standard",
-    store: StoreOption = None,
-    form: FormatOption = Format.TABLE,
+    *, suite: SuiteOption = "standard", store: StoreOption = None, form: FormatOption = Format.TABLE
 ) -> None:
     """List the cells that need measuring, with reasons.
 

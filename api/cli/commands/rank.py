@@ -8,12 +8,7 @@ import typer
 
 from api.cli.completion import complete
 from api.cli.contract import GUIDE, check_contract, name_of
-from api.cli.measuring import (
-    AVAILABLE_WORKERS,
-    ManyWorkersOption,
-    StoreOption,
-    stores_of,
-)
+from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption, StoreOption, stores_of
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.schema import words
 from api.schema.scores import LeaderboardRow
@@ -38,8 +33,7 @@ def rank(
     ],
     *,
     dataset: Annotated[
-        str,
-        typer.Option(autocompletion=complete(words.DatasetName), help="Data set."),
+        str, typer.Option(autocompletion=complete(words.DatasetName), help="Data set.")
     ],
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     store: StoreOption = None,

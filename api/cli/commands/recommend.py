@@ -16,12 +16,7 @@ from registry.requirements import PARAMETERS, SETTINGS
     *("mission", *PARAMETERS, *SETTINGS, "edition", "sort", "include", "limit", "cursor"),
     "calibrations",
 )
-def recommend(
-    context: typer.Context,
-    *,
-    asked: Asked,
-    form: FormatOption = Format.TABLE,
-) -> None:
+def recommend(context: typer.Context, *, asked: Asked, form: FormatOption = Format.TABLE) -> None:
     """Rank sensors and calibrations that meet your requirements.
 
     Lists architectures (detector + mask) whose reported or measured evidence meets all

@@ -47,8 +47,7 @@ def run(
     study: Annotated[
         str | None,
         typer.Argument(
-            autocompletion=complete(words.StudyKey),
-            help="Key of the study, such as Chang2008.",
+            autocompletion=complete(words.StudyKey), help="Key of the study, such as Chang2008."
         ),
     ] = None,
     *,

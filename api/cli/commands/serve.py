@@ -44,8 +44,7 @@ def serve(
         int, typer.Option(min=0, max=65535, help="Port to listen on; 0 selects a free port.")
     ] = 8000,
     workers: Annotated[
-        int,
-        typer.Option(min=1, max=64, help="Number of processes, each with all data loaded."),
+        int, typer.Option(min=1, max=64, help="Number of processes, each with all data loaded.")
     ] = 1,
     access_log: Annotated[
         bool, typer.Option("--access-log", help="Print a line per request.")

@@ -59,17 +59,14 @@ def studies(
         StudyFormat,
         typer.Option(
             "--format",
-            help=(
-                "Output format; bibtex, ris and csl (JSON) are references to studies with a "
-                "known title."
-            ),
+            help="Output format; bibtex, ris and csl (JSON) are references to studies with a "
+            "known title.",
         ),
     ] = StudyFormat.TABLE,
     published: Annotated[
         bool,
         typer.Option(
-            "--published",
-            help="Compare reported accuracies with own errors here, worst first.",
+            "--published", help="Compare reported accuracies with own errors here, worst first."
         ),
     ] = False,
 ) -> None:

@@ -34,11 +34,7 @@ FINDINGS_CSV = (
 
 
 @app.command()
-def check(
-    *,
-    data: DataOption = None,
-    form: FormatOption = Format.TABLE,
-) -> None:
+def check(*, data: DataOption = None, form: FormatOption = Format.TABLE) -> None:
     """Validate the tables of the survey and compare them with its findings.
 
     Reports counts, completeness of each attribute by basis, contradictions between a study's number

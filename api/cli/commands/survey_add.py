@@ -32,10 +32,7 @@ _PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")
 
 def add(
     context: typer.Context,
-    file: Annotated[
-        Path | None,
-        typer.Argument(help="TOML template of the study."),
-    ] = None,
+    file: Annotated[Path | None, typer.Argument(help="TOML template of the study.")] = None,
     *,
     init: Annotated[
         str | None,

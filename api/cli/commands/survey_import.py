@@ -24,15 +24,14 @@ def import_(
     file: Annotated[
         Path,
         typer.Argument(
-            help="CSV or XLSX table of studies, or the survey's bibliography (.bib, .ris).",
+            help="CSV or XLSX table of studies, or the survey's bibliography (.bib, .ris)."
         ),
     ],
     *,
     replace: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="KEY",
-            help="Study whose confirmed identity may be replaced; may be repeated.",
+            metavar="KEY", help="Study whose confirmed identity may be replaced; may be repeated."
         ),
     ] = None,
     mapped: Annotated[
@@ -40,10 +39,8 @@ def import_(
         typer.Option(
             "--map",
             metavar="COL=ATTRIBUTE",
-            help=(
-                "Attribute of a column: study, title, authors, year or another attribute; - "
-                "ignores it; may be repeated. Other columns are matched by their names."
-            ),
+            help="Attribute of a column: study, title, authors, year or another attribute; - "
+            "ignores it; may be repeated. Other columns are matched by their names.",
         ),
     ] = None,
     sheet: Annotated[str | None, typer.Option(help="Sheet of the workbook.")] = None,

@@ -32,8 +32,7 @@ def verify(
         typer.Option(min=1, help="Number of cells; by default 10, or all cells of --suite."),
     ] = None,
     seed: Annotated[
-        int | None,
-        typer.Option(help="Seed of the random sample; by default a new one."),
+        int | None, typer.Option(help="Seed of the random sample; by default a new one.")
     ] = None,
     suite: SuiteOption = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,

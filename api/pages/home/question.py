@@ -29,11 +29,7 @@ SHARES = {
     "0.99": "99 of 100",
 }
 ORDERS = dict(zip(SORTS, ("evidence, then error", "error", "number of studies"), strict=True))
-KINDS = {
-    "reported": "reported",
-    "measured": "measured here",
-    "both": "both reported and measured",
-}
+KINDS = {"reported": "reported", "measured": "measured here", "both": "both reported and measured"}
 LEVELS_SAID = {"own": "own, of sensor and method"}
 _SAID = {
     "max_error_deg": "error at most {:g}°",
