@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Iterator, Sequence
 
 from api.cli.table_output import prose, table
+from api.figures.wording import plural
 from api.schema.recommendations import Architecture, Blocked, Calibration, Recommendations
 from registry.comparison import labels
 
@@ -27,7 +28,7 @@ def explanation(blocked: Blocked, width: int) -> str:
     said = f"no architecture meets the requirements: {named}{blocked.detail}"
     lines = prose(said, width, "  ")
     for one in blocked.relaxations:
-        found = _many(one.architectures, "architecture")
+        found = plural(one.architectures, "architecture")
         lines += prose(f"{one.words}: {found}", width, "    ", "  - ")
     return "\n".join(lines)
 
@@ -35,8 +36,8 @@ def explanation(blocked: Blocked, width: int) -> str:
 def _head(document: Recommendations, width: int) -> Iterator[str]:
     shown = len(document.architectures)
     first = "" if shown == document.count else f"first {shown} of "
-    count = _many(document.count, "architecture")
-    yield from prose(f"{first}{count}, {_many(document.designs, 'calibration')} in all", width)
+    count = plural(document.count, "architecture")
+    yield from prose(f"{first}{count}, {plural(document.designs, 'calibration')} in all", width)
     yield from prose(document.order, width)
     if document.requirements.get("mission"):
         asked = document.requirements.items()
@@ -72,7 +73,7 @@ def _architecture(one: Architecture, width: int) -> Iterator[str]:
         judged = {"reported": state.reported, "measured": state.measured, "advised": state.advised}
         said = ", ".join(f"{kind} {found}" for kind, found in judged.items() if found)
         yield from _paragraph("evidence", f"{state.requirement}: {said}", width)
-    built = f"{_many(one.studies, 'study', 'studies')}, {_many(one.products, 'product')}"
+    built = f"{plural(one.studies, 'study', 'studies')}, {plural(one.products, 'product')}"
     yield from _paragraph("built", built, width)
     for advice in one.advised:
         how = f": {advice.how}" if advice.how else ""
@@ -112,10 +113,6 @@ def _calibration(rank: int, one: Calibration) -> dict[str, str]:
 
 def _plain(value: object) -> str:
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-
-
-def _many(number: int, one: str, several: str | None = None) -> str:
-    return f"{number} {one if number == 1 else several or one + 's'}"
 
 
 def _paragraph(label: str, words: str, width: int) -> Sequence[str]:

@@ -146,7 +146,7 @@ def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
     said = " × ".join(wording.display_name(level, value) for level, value in pair)
     parts = [wording.studies(count) if count else "no study"]
     if known.pipelines:
-        parts.append(f"{wording.plural(known.pipelines, 'pipeline', 'pipelines')} measured here")
+        parts.append(f"{wording.plural(known.pipelines, 'pipeline')} measured here")
     if (best := known.best_pipeline) is not None:
         parts.append(f"best own error {digits(best.nominal.rms_deg)}° on {best.dataset}")
     if known.state == "impossible":

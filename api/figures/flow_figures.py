@@ -185,7 +185,7 @@ def _text(found: Flows, facts: Facts) -> tuple[str, ...]:
         if nodes:
             most = max(nodes, key=lambda node: node.count)
             value = wording.value_label(facts.taxonomy, level, most.value)
-            among = wording.plural(len(nodes), "value", "values")
+            among = wording.plural(len(nodes), "value")
             said.append(
                 f"Most frequent {wording.LEVELS[level].lower()}: {value}, "
                 f"{wording.studies(most.count)}, among {among}."

@@ -266,7 +266,7 @@ def _title(row: dict[str, Any], facts: Facts) -> str:
 def _text(studies: Sequence[Study], rows: Sequence[dict[str, Any]]) -> tuple[str, ...]:
     known = {name: [s for s in studies if _number(s, name) is not None] for name in NUMBERS}
     both = sum(study in known["fov_deg"] for study in known["accuracy_rms_deg"])
-    sensors = f"{wording.plural(len(rows), 'sensor', 'sensors')} of {wording.studies(len(studies))}"
+    sensors = f"{wording.plural(len(rows), 'sensor')} of {wording.studies(len(studies))}"
     accuracies, fields = (len(known[name]) for name in reversed(NUMBERS))
     numbers = f"the accuracy of {accuracies}, the field of view of {fields}, both of {both}"
     said = [f"{sensors}; known as numbers are {numbers} studies."]

@@ -149,7 +149,7 @@ def _text(rows: Sequence[Mapping[str, Any]], studies: int) -> tuple[str, ...]:
         if category["model_category"] != NO_IMPLEMENTATION_STATED:
             most = max(models, key=lambda model: model["count"])
             said.append(
-                f"{name}: {wording.plural(len(models), 'model', 'models')}, most often "
+                f"{name}: {wording.plural(len(models), 'model')}, most often "
                 f"{most['name']} ({most['count']})."
             )
     return tuple(said)

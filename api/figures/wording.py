@@ -48,9 +48,9 @@ def amount(count: float) -> str:
     return f"{count:.0f}" if float(count).is_integer() else f"{count:.1f}"
 
 
-def plural(count: float, one: str, many: str) -> str:
-    """Return a count with its noun."""
-    return f"{amount(count)} {one if count == 1 else many}"
+def plural(count: float, one: str, many: str | None = None) -> str:
+    """Return a count with its noun: 1 study, 2 studies."""
+    return f"{amount(count)} {one if count == 1 else many or one + 's'}"
 
 
 def studies(count: float) -> str:

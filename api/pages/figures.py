@@ -220,7 +220,7 @@ def _matrix_cells(row: Row) -> list[Cell]:
         )
         for side in _SIDES
     ]
-    measured = wording.plural(row["pipelines"], "pipeline", "pipelines")
+    measured = wording.plural(row["pipelines"], "pipeline")
     return [
         *pair,
         ("Measured here", measured if row["pipelines"] else "–", row["best_dataset"] or ""),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
 from api.pages.terms import glossary
@@ -18,13 +16,14 @@ COLUMNS = ("term", "short", "meaning")
 @router.page("/glossary")
 async def words(known: Known) -> View:
     """All terms in alphabetical order, and the taxonomy by attribute."""
-    terms = [asdict(term) for term in glossary().values()]
+    every = glossary().values()
+    terms = [{"term": t.term, "short": t.name, "meaning": t.meaning} for t in every]
     taxonomy = known.taxonomy.to_dict()
     document = {"terms": terms, "taxonomy": taxonomy}
     return View(
         "glossary.html",
         Document(document, COLUMNS, lambda: terms),
-        terms=glossary().values(),
+        terms=every,
         taxonomy=taxonomy,
         names=NAMES,
     )

@@ -8,6 +8,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from api.figures.wording import plural, studies
 from benchmark.leaderboard import summaries
 from survey_data.reported import UNSPECIFIED, statistics
 
@@ -52,16 +53,6 @@ def percent(share: float | None) -> str:
     return "100 %" if share == 1 else f"{math.floor(share * 1000) / 10:.1f} %"
 
 
-def count_text(count: int, one: str, many: str | None = None) -> str:
-    """Return a count with its noun: 1 study, 2 studies."""
-    return f"{count} {one if count == 1 else many or one + 's'}"
-
-
-def studies_text(count: int) -> str:
-    """Return a number of studies in words."""
-    return count_text(count, "study", "studies")
-
-
 def upfirst(text: str) -> str:
     """Return a text with a capital first letter, all others as they are."""
     return f"{text[:1].upper()}{text[1:]}"
@@ -91,7 +82,7 @@ def kind_said(kind: str) -> str:
 
 
 GIVEN = (
-    *(number, degrees, own_error, wide, times, percent, count_text, studies_text),
+    *(number, degrees, own_error, wide, times, percent, plural, studies),
     *(sentence, upfirst, unit_name, kind_said),
 )
 """What templates are given as filters."""

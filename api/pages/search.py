@@ -98,5 +98,5 @@ def page_of(entry: Entry) -> str:
         return addresses.value_page(attribute, value)
     if entry.kind == "attribute":
         return f"/glossary#{addresses.anchor('attribute', entry.id)}"
-    term = glossary().get(entry.id)
-    return f"/glossary#{term.id}" if term else "/glossary"
+    known = entry.id in glossary()
+    return f"/glossary#{addresses.anchor('term', entry.id)}" if known else "/glossary"

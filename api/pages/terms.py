@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 
 from markupsafe import Markup
 
 from api.addresses import anchor, study_page, value_page
-from api.figures.wording import NONE, WITHOUT
-from api.glossary import words
+from api.figures.wording import NONE, display_name, value_name
+from api.glossary import Term, words
 from registry.studies import facts
 from registry.taxonomy import ATTRIBUTES, NOT_IN_SURVEY
 from survey_data import labels
@@ -24,24 +23,10 @@ from survey_data.sources import source_named
 _LITERAL = re.compile(r"(?P<quotes>``?)(?P<code>[^`]+)(?P=quotes)")
 
 
-@dataclass(frozen=True)
-class Term:
-    """A word of the field."""
-
-    term: str
-    short: str
-    meaning: str
-
-    @property
-    def id(self) -> str:
-        """Id of its entry on the page."""
-        return anchor("term", self.term)
-
-
 @cache
 def glossary() -> dict[str, Term]:
     """Return the terms by name, in alphabetical order."""
-    return {one.term: Term(one.term, one.name, one.meaning) for one in words()}
+    return {one.term: one for one in words()}
 
 
 @cache
@@ -58,7 +43,7 @@ def term(name: str, text: str | None = None) -> Markup:
     if known is None:
         return Markup.escape(text or name)
     link = Markup('<a class="term" href="/glossary#{id}" title="{short}">{text}</a>')
-    return link.format(id=known.id, short=known.short, text=text or name)
+    return link.format(id=anchor("term", name), short=known.name, text=text or name)
 
 
 def marked(
@@ -100,24 +85,18 @@ def explain_terms(text: str) -> Markup:
 
 def display_text(value: str, attribute: str) -> str:
     """Return a value as it is written: the survey's "None" says of what there is none."""
-    return WITHOUT.get(attribute, value) if value == NONE else value
+    return display_name(attribute, value)
 
 
 def term_name(value: str, attribute: str) -> str:
     """Return the name of a value, which stands for its abbreviation."""
-    if value == NONE:
-        return WITHOUT.get(attribute, value)
-    return facts().taxonomy.name(attribute, value)
+    return value_name(facts().taxonomy, attribute, value)
 
 
 def local_term_name(value: str, attribute: str) -> str:
     """Return the name of a value where it says more than the value does, else nothing."""
-    if attribute not in ATTRIBUTES or term_name(value, attribute) in {
-        value,
-        display_text(value, attribute),
-    }:
-        return ""
-    return term_name(value, attribute)
+    name = term_name(value, attribute) if attribute in ATTRIBUTES else ""
+    return "" if name in {value, display_text(value, attribute)} else name
 
 
 def value(text: str, attribute: str) -> Markup:

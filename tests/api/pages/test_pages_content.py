@@ -8,7 +8,7 @@ from html import unescape
 
 import pytest
 
-from api.pages.numbers import count_text, degrees, number, percent, times
+from api.pages.numbers import degrees, number, percent, plural, times
 from api.pages.terms import display_text, explain_terms
 from tests.api.conftest import Client
 
@@ -59,8 +59,8 @@ def test_the_answer_reads_without_a_script(atlas: Client) -> None:
     document = atlas.get(f"/v1/recommendations?{asked}&include=calibrations").json()
     html = atlas.get(f"/?{asked}").text
     page = text_of(html)
-    assert count_text(document["count"], "architecture") in page
-    assert count_text(document["designs"], "calibration") in page
+    assert plural(document["count"], "architecture") in page
+    assert plural(document["designs"], "calibration") in page
     assert document["order"] in page
     for architecture in document["architectures"]:
         assert f"{architecture['detector']} + {architecture['mask']}" in page
