@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli.completion import complete
+from api.cli.options import complete
 from api.schema.parameters import OneOf
 from api.user_cache import user_cache
 from benchmark.contract import Cell

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
 from types import NoneType, UnionType
@@ -13,7 +14,6 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from api.cli.completion import complete
 from api.schema import words
 from api.schema.former_names import PARAMETERS
 from api.schema.parameters import OneOf
@@ -130,3 +130,23 @@ def _given(asked: Asked) -> Iterator[tuple[str, Any]]:
             yield name, [NO_IMPLEMENTATION_STATED if one == NONE_STATED else one for one in plain]
         elif value is not None and value != []:
             yield name, value
+
+
+VARIABLE = "_SUNATLAS_COMPLETE"  # that a shell sets when it asks
+
+
+def complete(kind: Any) -> Callable[[str], list[str]]:
+    """Return what completes a word of a closed list, or of a type of one, as Typer takes it."""
+    word: OneOf = kind if isinstance(kind, OneOf) else get_args(kind)[1]
+
+    def completed(incomplete: str) -> list[str]:
+        return _quoted([one for one in word.words() if one.startswith(incomplete)])
+
+    return completed
+
+
+def _quoted(words: Sequence[str]) -> list[str]:
+    """Return words as they are typed: bash takes what is completed as it is."""
+    if os.environ.get(VARIABLE) != "complete_bash":
+        return list(words)
+    return [word.replace(" ", "\\ ") for word in words]

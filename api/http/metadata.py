@@ -7,8 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request, Response
 
 from api.metadata import signposting
-from api.metadata.identity import identity
-from api.metadata.terms import LD_JSON, LINKSET
+from api.metadata.identity import LD_JSON, LINKSET, identity
 from api.schema.words import DatasetName
 from api.service import metadata as service
 from api.web.answers import AnswerRoute, LinkDocument, link

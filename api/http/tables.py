@@ -23,14 +23,13 @@ from api.schema.curves import Curves
 from api.schema.datasets import DatasetDetail, Datasets, Realism, SoldSensors
 from api.schema.directions import Directions
 from api.schema.figures import Figure, Figures
-from api.schema.flows import Flows
+from api.schema.flows import Flows, Taxonomy
 from api.schema.measured_figures import Gap, Robustness, TradeOff
 from api.schema.recommendations import AnswerFlow, Designs, Recommendations
 from api.schema.samples import SampleErrors
 from api.schema.scores import Leaderboard, LeaderboardRows, Scores
 from api.schema.search import SearchResults
 from api.schema.studies import Editions, Studies, StudyDetail, StudyQuery
-from api.schema.taxonomy import Taxonomy
 from api.service import (
     advice,
     algorithms,

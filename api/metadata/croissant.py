@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from api.metadata.citation import Author
-from api.metadata.identity import Identity
-from api.metadata.terms import LICENCES
+from api.metadata.identity import LICENCES, Identity
 
 CONFORMS_TO = "http://mlcommons.org/croissant/1.0"
 #: Types of a Table Schema, and of Arrow, in the words of schema.org.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
 from functools import cache
@@ -143,3 +144,12 @@ def _write(name: str) -> str | None:
         return path.read_text("utf-8")
     installed = _installed()
     return installed.read_text(f"licenses/{name}") if installed else None
+
+
+LICENCES: Mapping[str, str] = {
+    "MIT": "https://spdx.org/licenses/MIT",
+    "CC-BY-4.0": "https://spdx.org/licenses/CC-BY-4.0",
+}
+SCHEMA = "https://schema.org/"
+LD_JSON = "application/ld+json"
+LINKSET = "application/linkset+json"

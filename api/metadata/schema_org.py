@@ -9,10 +9,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from api.metadata.citation import persistent
-from api.metadata.identity import Identity
+from api.metadata.identity import LICENCES, SCHEMA, Identity
 from api.metadata.served import SUBJECTS
 from api.metadata.signposting import LandingPage
-from api.metadata.terms import LICENCES, SCHEMA
 from registry.catalogue import Implementation
 
 Entity = dict[str, Any]

@@ -14,8 +14,7 @@ from urllib.parse import quote
 
 from api.metadata.citation import persistent
 from api.metadata.croissant import CONFORMS_TO
-from api.metadata.identity import Identity
-from api.metadata.terms import LD_JSON, LICENCES, LINKSET, SCHEMA
+from api.metadata.identity import LD_JSON, LICENCES, LINKSET, SCHEMA, Identity
 
 HTML = "text/html"
 #: References to a study, as the service gives them.

@@ -16,7 +16,7 @@ from api.schema.studies import StudiesQuery
 from api.schema.words import StudyKey
 from api.service import studies as service
 from api.service.knowledge import Knowledge
-from api.service.ladder import ladder
+from api.service.studies import ladder
 from api.web.dependencies import Known
 from benchmark.leaderboard.board import NOMINAL
 from benchmark.metrics.score import AVAILABLE

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from benchmark.metrics.score import is_available
+
+if TYPE_CHECKING:
+    from api.service.measurements import Measurements
+
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 from api.schema.studies import AttributeValue, Edition, StudiesQuery, StudyRow
 from api.schema.table import columns_of
 from api.schema.words import StudyKey
 from api.service.documents import Document, list_document
 from api.service.knowledge import Knowledge
-from api.service.ladder import ladder
 from api.service.pagination import order, page
 from benchmark.leaderboard.headlines import read_differences
 from registry.fidelity.evidence import SCORE_FACTOR, own_error, reason_for_score
@@ -247,3 +253,48 @@ def say_comparison(rows: Sequence[Mapping[str, Any]]) -> str:
         f"{max(times):.2g}. Both are RMS, over all units measured; docs/limits.md compares figures "
         "of each study's own kind, precisions too, on unit 0."
     )
+
+
+_RUNG = ("extractor", "model", "own_error_deg", "availability")
+
+
+def ladder(own: Mapping[str, Any] | None, measurements: Measurements) -> dict[str, Any] | None:
+    """Return the rungs below a study's reported figure, on one data set and condition.
+
+    `own`: score of the study's own method, with `dataset` and `condition`; None for none.
+
+    Returns
+    -------
+    dict or None
+        ``dataset``, ``condition``, ``nominal`` (whether that is the data set's first condition,
+        under which own errors are over all units), ``own`` and ``best`` (names, own error and
+        availability), ``bound_deg`` with the unit known and ``bound_unit_deg`` with the unit known
+        by its darks and flats. None where the study's method has no error.
+    """
+    if own is None:
+        return None
+    dataset, condition = own["dataset"], own["condition"]
+    scored = (
+        row
+        for (name, at, *_), row in measurements.score_of.items()
+        if (name, at) == (dataset, condition) and row["own_error_deg"] is not None
+    )
+    best = min(
+        scored,
+        key=lambda row: (
+            not is_available(row),
+            row["own_error_deg"],
+            row["extractor"],
+            row["model"],
+        ),
+    )
+    pin = measurements.pins.get((dataset, condition, "test"))
+    return {
+        "dataset": dataset,
+        "condition": condition,
+        "nominal": condition == measurements.preset(dataset).conditions[0],
+        "own": {name: own[name] for name in _RUNG},
+        "best": {name: best[name] for name in _RUNG},
+        "bound_deg": measurements.bounds(dataset).get(condition),
+        "bound_unit_deg": pin and pin.bound_unit_deg,
+    }

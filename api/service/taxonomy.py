@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from api.schema.flows import FlowsQuery, Link
+from api.schema.flows import FlowsQuery, Link, TaxonomyRow
 from api.schema.table import columns_of
-from api.schema.taxonomy import TaxonomyRow
 from api.schema.words import Chart
 from api.service.documents import Document
 from api.service.knowledge import Knowledge

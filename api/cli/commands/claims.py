@@ -7,8 +7,7 @@ from typing import Annotated
 import typer
 
 from api.cli.asking import ask
-from api.cli.completion import complete
-from api.cli.options import Asked, asked_by
+from api.cli.options import Asked, asked_by, complete
 from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
 from api.cli.wrong_call import WrongCallError
 from api.schema import words

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from api.cli.completion import VARIABLE
+from api.cli.options import VARIABLE
 
 
 class Shell(StrEnum):

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from api.cli.table_output import Format, FormatOption, emit
+from api.cli.wrong_call import WrongCallError, given, only_beside
+
+if TYPE_CHECKING:
+    from api.real.sets import RealSet
+
+
 from api.cli import spreadsheets
 from api.cli.asking import ask, knowledge
-from api.cli.commands import dataset_fetch
-from api.cli.completion import complete
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
-from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
-from api.cli.wrong_call import WrongCallError, given
+from api.cli.options import Asked, asked_by, complete
+from api.cli.table_output import emit_answer, say
 from api.schema import words
 from api.schema.datasets import Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
@@ -36,8 +40,6 @@ from benchmark.running import pinning
 from files.atomic import replace_file
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
-
-app.command("fetch")(dataset_fetch.fetch)
 
 COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions", "follows")
 CONDITIONS = ("condition", "bound_deg", "description")
@@ -362,3 +364,63 @@ def _check(store: Store, names: list[str] | None, workers: int) -> None:
         typer.echo(f"sunatlas: {len(wrong)} pins do not hold, the first: {wrong[0]}", err=True)
         raise typer.Exit(1)
     typer.echo("every pin holds: generated again", err=True)
+
+
+@app.command()
+def fetch(
+    context: typer.Context,
+    name: Annotated[
+        str | None, typer.Argument(help="Name of the set; without one they are listed.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Output directory; by default the set's name.")
+    ] = None,
+    scores: Annotated[
+        bool,
+        typer.Option(
+            "--scores",
+            help="Download nothing; print the errors of models on the set, beside those on the "
+            "standard data set where models rank most alike.",
+        ),
+    ] = False,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Download real readings from their public source, checked by SHA-256.
+
+    Nothing is bundled: licence and citation are written beside the readings.
+    `sunatlas calibrate` reads the files.
+    """
+    from api.real.fetching import fetch as run  # noqa: PLC0415 - of this command
+    from api.real.sets import SETS  # noqa: PLC0415 - as above
+
+    if name is None:
+        if options := given(context):
+            raise WrongCallError(
+                f"{', '.join(options)}: name a set of real readings: {', '.join(SETS)}"
+            )
+        for one in SETS.values():
+            typer.echo(f"{one.name}: {one.about} ({one.licence})")
+        return
+    if name not in SETS:
+        raise WrongCallError(
+            f"there is no set of real readings {name!r} (there are {', '.join(SETS)})"
+        )
+    if scores:
+        only_beside(context, "--scores", "--format", "--safe")
+        _print_scores(SETS[name], form)
+        return
+    only_beside(context, "a download", "--out")
+    written = run(SETS[name], out or Path(name))
+    typer.echo(f"wrote {', '.join(path.name for path in written)} in {out or name}")
+    typer.echo(f"cite: {SETS[name].citation}")
+
+
+def _print_scores(real: RealSet, form: Format) -> None:
+    """Print the kept scores of a set, with its licence and whose it is."""
+    from api.cli.asking import knowledge  # noqa: PLC0415 - the published record
+    from api.real.scores import beside_standard  # noqa: PLC0415 - of this command
+
+    rows = beside_standard(real.name, knowledge().measurements.nominal)
+    emit(rows, tuple(rows[0]), form, title=f"{len(rows)} models on {real.name}, runs left out")
+    typer.echo(f"licence: {real.licence}", err=True)
+    typer.echo(f"cite: {real.citation}", err=True)

@@ -7,12 +7,10 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli import findings
 from api.cli.boards import architectures_text, overview_text
-from api.cli.completion import complete
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
-from api.cli.options import Asked, asked_by
-from api.cli.table_output import Format, FormatOption, emit, emit_answer, line_width, prose
+from api.cli.options import Asked, asked_by, complete
+from api.cli.table_output import Format, FormatOption, emit, emit_answer, line_width, prose, say
 from api.cli.wrong_call import WrongCallError, given
 from api.schema import words
 from api.schema.boards import OverviewQuery
@@ -23,8 +21,6 @@ from benchmark.metrics.rings import EDGES_DEG
 from benchmark.results.store import PUBLISHED
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
-app.command("findings")(findings.findings)
-
 COLUMNS = (
     *("rank", "group", "dataset", "condition", "extractor", "model", "own_error_deg", "low_deg"),
     *(
@@ -343,3 +339,39 @@ def _require(what: str, names: Iterable[str], known: Iterable[str]) -> None:
     for name in names:
         if name not in there:
             raise UnknownNameError(what, name, there)
+
+
+#: Columns of the estimates; `low` to `high` is the 95 % interval.
+FINDINGS = ("finding", "estimate", "kind", "value", "low", "high", "n", "of")
+#: As `benchmark.leaderboard.findings.KEYS`, which takes seconds to import.
+NAMES = ("methods", "constants", "benches", "sources", "poses")
+
+
+@app.command()
+def findings(
+    finding: Annotated[
+        str | None, typer.Argument(help=f"Finding whose pairs to print: {', '.join(NAMES)}.")
+    ] = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Show what the published record shows, with 95 % intervals; or the pairs of one finding.
+
+    Each finding compares pairs: two methods on the same samples, or one method under two
+    calibrations. JSON and CSV list its estimates: medians with intervals by order statistics,
+    shares with those of Clopper and Pearson. With a name, the pairs are printed.
+    """
+    if finding is not None and finding not in NAMES:
+        raise WrongCallError(f"no finding {finding!r}; expected one of {', '.join(NAMES)}")
+    from api.cli.asking import knowledge  # noqa: PLC0415 - slow
+    from api.service import leaderboard  # noqa: PLC0415 - as above
+
+    every = {one.key: one for one in leaderboard.findings(knowledge())}
+    if finding is not None:
+        pairs = every[finding].pairs
+        emit(pairs, tuple(pairs[0]), form, title=every[finding].title)
+    elif form is Format.TABLE:
+        for place, one in enumerate(every.values(), start=1):
+            say(f"{place}. {one.title} {one.details} Pairs: `{one.command}`", "   ")
+    else:
+        rows = [{"finding": one.key, **e.row()} for one in every.values() for e in one.estimates]
+        emit(rows, FINDINGS, form)

@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from api.cli.completion import complete
 from api.cli.contract import GUIDE, check_contract, name_of
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption, StoreOption, stores_of
+from api.cli.options import complete
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.schema import words
 from api.schema.scores import LeaderboardRow

@@ -10,7 +10,6 @@ import typer
 
 from api.cli.asking import ask, knowledge
 from api.cli.commands import benchmark
-from api.cli.completion import complete
 from api.cli.measuring import (
     SchedulerOption,
     ScoredCells,
@@ -21,7 +20,7 @@ from api.cli.measuring import (
     say_sources,
     score_cells,
 )
-from api.cli.options import Asked, asked_by
+from api.cli.options import Asked, asked_by, complete
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from api.schema import words

@@ -10,8 +10,7 @@ import typer
 
 from api.citations import FORMS
 from api.cli.asking import ask, knowledge
-from api.cli.completion import complete
-from api.cli.options import Asked, asked_by
+from api.cli.options import Asked, asked_by, complete
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError, only_beside
 from api.schema import words

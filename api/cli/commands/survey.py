@@ -9,8 +9,7 @@ import typer
 
 import survey_data
 from api.cli.commands import survey_add
-from api.cli.commands.survey_import import import_
-from api.cli.survey_options import DataOption
+from api.cli.commands.survey_import import DataOption, import_
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from survey_data import FidelityReport, Problem, facts_manifest, labels
 from survey_data.descriptor import DATA_DIRECTORY

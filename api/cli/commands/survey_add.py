@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli.survey_options import ApplyOption, DataOption
+from api.cli.commands.survey_import import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError, only_beside
 from files.atomic import replace_file

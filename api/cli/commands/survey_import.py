@@ -10,7 +10,6 @@ import typer
 from pydantic import BaseModel
 
 import survey_data
-from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from survey_data import ImportPlan
@@ -145,3 +144,11 @@ def _print(plan: ImportPlan) -> None:
         typer.echo(f"Nothing written; --apply writes {edits} cells.")
     else:
         typer.echo("Nothing written.")
+
+
+DataOption = Annotated[
+    Path | None, typer.Option(help="Directory of the tables; by default those of the Atlas.")
+]
+ApplyOption = Annotated[
+    bool, typer.Option("--apply", help="Write the changes; otherwise only show them.")
+]

@@ -6,7 +6,7 @@ import subprocess
 import pytest
 from typer.testing import CliRunner
 
-from api.cli import completion
+from api.cli import options as completion
 from api.cli.command_line import app
 
 

@@ -15,8 +15,8 @@ import pytest
 from api.figures import plots, shapes
 from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.figure import Figure
-from api.figures.ordering import crossings, order
 from api.figures.picture import picture
+from api.figures.sankey import crossings, order
 from api.figures.specification import specification
 from api.service.knowledge import Knowledge
 from registry.studies import facts
