@@ -186,7 +186,7 @@ def path_function(function: Callable[..., Document], kind: type[Answer] = Answer
 
     @wraps(function)
     async def answer(**given: Any) -> Answer:
-        return kind.of(function(**{name: given[name] for name in taken}))
+        return kind(function(**{name: given[name] for name in taken}))
 
     types: dict[str, Any] = {name: _part(name, hint) for name, hint in hints.items()}
     types["known"] = Known

@@ -13,6 +13,7 @@ from api.citations import blank_bibtex
 from api.metadata.identity import identity
 from api.pages.serving import PageRouter, View
 from api.pages.study import IDENTITIES
+from api.service.documents import Document
 from api.web.answers import Answer
 from api.web.dependencies import NO_PARAMETERS, Known
 from api.web.negotiation import BIBTEX
@@ -33,7 +34,7 @@ class MissingMetadata(Answer):
         """Return the answer in a media type."""
         if wanted != BIBTEX:
             return super().representation(wanted)
-        incomplete = [row for row in self.document["items"] if row["missing"]]
+        incomplete = [row for row in self.found.document["items"] if row["missing"]]
         saved = {"Content-Disposition": 'attachment; filename="missing.bib"'}
         return self.written(blank_bibtex(incomplete), BIBTEX, **saved)
 
@@ -56,7 +57,8 @@ async def bibliography(known: Known, _asked: Annotated[None, NO_PARAMETERS] = No
     document = {"items": rows, "total": len(rows), "complete": complete, "missing": counts}
     return View(
         "studies/missing.html",
-        MissingMetadata(document, COLUMNS, lambda: rows),
+        Document(document, COLUMNS, lambda: rows),
+        answer=MissingMetadata,
         identities=IDENTITIES,
         form=_form(),
     )

@@ -58,9 +58,10 @@ class View(Response):
     def __init__(
         self,
         template: str,
-        found: Document | Answer,
+        found: Document,
         /,
         *,
+        answer: type[Answer] = Answer,
         landing: LandingPage | None = None,
         entity: Mapping[str, Any] | None = None,
         figures: Sequence[Figure] = (),
@@ -69,6 +70,7 @@ class View(Response):
         super().__init__()
         self.template = template
         self.found = found
+        self.answer = answer
         self.landing = landing
         self.figures = figures
         self.context = {"entity": entity, **context}
@@ -77,8 +79,7 @@ class View(Response):
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
             links = self.landing.links_of_metadata() if self.landing else ()
-            answer = Answer.of(self.found) if isinstance(self.found, Document) else self.found
-            return link(answer.representation(wanted), *headers(links))
+            return link(self.answer(self.found).representation(wanted), *headers(links))
         context = {"document": self.found.document, "path": path, "query": query, **self.context}
         links = self.landing.links() if self.landing else ()
         page = HTMLResponse(render(self.template, context), self.status_code)

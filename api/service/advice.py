@@ -8,9 +8,9 @@ from pathlib import Path
 import survey_data
 from api.schema.advice import Advice, AdviceQuery, Statement
 from api.schema.table import columns_of
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import narrow, order, page
+from api.service.pagination import narrow
 from benchmark.leaderboard.scope import LEADING, UNITS
 from benchmark.metrics.rings import ANSWERED, FEWEST
 from benchmark.metrics.score import AVAILABLE, METRIC_VERSION
@@ -25,8 +25,7 @@ def advice(known: Knowledge, query: AdviceQuery) -> Document:
     Rows of errors name errors that occur, which is no recommendation.
     """
     found = narrow(known.advice, query, ("requirement", "detector", "mask"))
-    shown = page(order(found, query.sort), "/v1/advice", query)
-    return list_document(shown, shown.items, columns_of(Advice), fields=query.fields)
+    return listing(found, "/v1/advice", query, Advice)
 
 
 def protocol() -> Document:

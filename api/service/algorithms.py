@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from api.schema.algorithms import Algorithm, AlgorithmsQuery
-from api.schema.table import columns_of
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import order, page
 
 
 def algorithms(known: Knowledge, query: AlgorithmsQuery) -> Document:
@@ -14,5 +12,4 @@ def algorithms(known: Knowledge, query: AlgorithmsQuery) -> Document:
     found = [
         implementation.to_dict() for implementation in known.catalogue.implementations(query.role)
     ]
-    shown = page(order(found, query.sort), "/v1/algorithms", query)
-    return list_document(shown, shown.items, columns_of(Algorithm), fields=query.fields)
+    return listing(found, "/v1/algorithms", query, Algorithm)

@@ -8,9 +8,8 @@ from typing import Any
 from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
 from api.schema.table import columns_of
 from api.schema.words import ClaimId
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import order, page
 from benchmark.claims.ledger import Entry, tally
 
 
@@ -20,12 +19,8 @@ def claims(known: Knowledge, query: ClaimsQuery) -> Document:
     CSV: a row per claim.
     """
     found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
-    items = order([entry.to_dict() for entry in found], query.sort)
-    shown = page(items, "/v1/claims", query)
-    counts = tally(found)
-    return list_document(
-        shown, shown.items, columns_of(ClaimRow), fields=query.fields, tally=counts
-    )
+    items = [entry.to_dict() for entry in found]
+    return listing(items, "/v1/claims", query, ClaimRow, tally=tally(found))
 
 
 def claim(known: Knowledge, id: ClaimId) -> Document:  # noqa: A002 - the parameter's name

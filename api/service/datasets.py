@@ -19,10 +19,10 @@ from api.schema.datasets import (
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.table import columns_of
 from api.schema.words import DatasetName
-from api.service.documents import Document, list_document
+from api.service.documents import Document, list_document, listing
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
-from api.service.pagination import order, page
+from api.service.pagination import page
 from api.service.problems import Problem
 from benchmark.results import samples
 
@@ -35,9 +35,7 @@ _DIGITS = {"error_deg": 4, "bound_deg": 5, "sun_x": 7, "sun_y": 7, "sun_z": 7}
 
 def datasets(known: Knowledge, query: DatasetsQuery) -> Document:
     """List the simulated data sets."""
-    cards = order(known.measurements.cards, query.sort)
-    shown = page(cards, "/v1/datasets", query)
-    return list_document(shown, shown.items, columns_of(Dataset), fields=query.fields)
+    return listing(known.measurements.cards, "/v1/datasets", query, Dataset)
 
 
 def dataset(known: Knowledge, name: DatasetName) -> Document:
@@ -58,8 +56,7 @@ def errors(known: Knowledge, name: DatasetName, query: SampleErrorsQuery) -> Doc
     """
     found = choose(known.measurements, name, query)
     shown = page(range(len(found)), f"/v1/datasets/{name}/errors", query)
-    items = rows_of(found.iloc[list(shown.items)])
-    return list_document(shown, items, columns_of(SampleError), fields=query.fields)
+    return list_document(shown, rows_of(found.iloc[list(shown.items)]), SampleError, query=query)
 
 
 def file(known: Knowledge, name: DatasetName, kind: str) -> bytes:

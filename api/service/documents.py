@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from api.schema.table import csv_of, flat
-from api.service.pagination import Page
+from api.schema.table import Model, columns_of, csv_of, flat
+from api.service.pagination import Page, order, page
 
 Row = Mapping[str, Any]
 
@@ -37,27 +37,37 @@ class Document:
         return csv_of(self.columns, self.rows())
 
 
+def listing(
+    rows: Sequence[Row],
+    path: str,
+    query: Any,
+    model: Model,
+    table: Callable[[Sequence[Row]], Sequence[Row]] | None = None,
+    **more: Any,
+) -> Document:
+    """Return the page of rows that a query asks for, in its order and with its columns.
+
+    `table` makes the rows of the CSV, where they are others than the items; `more` stands beside
+    them.
+    """
+    shown = page(order(rows, getattr(query, "sort", None)), path, query)
+    items = shown.items
+    return list_document(shown, items, model, table and table(items), query=query, **more)
+
+
 def list_document(
     shown: Page[Any],
     items: Sequence[Row],
-    columns: Sequence[str],
-    rows: Callable[[], Sequence[Row]] | None = None,
+    model: Model,
+    table: Sequence[Row] | None = None,
     *,
-    fields: Collection[str] = (),
+    query: Any,
     **more: Any,
 ) -> Document:
-    """Return a page of a list as a document.
-
-    Parameters
-    ----------
-    rows : gives the rows of the CSV; the items where left out
-    fields : columns to which rows and items are narrowed; none of them where empty
-    more : members of the document beside the items
-    """
-    table = rows or (lambda: items)
-    if fields:
+    """Return a page of a list as a document, narrowed to the columns that a query names."""
+    columns, rows = columns_of(model), items if table is None else table
+    if fields := getattr(query, "fields", ()):
         columns = tuple(name for name in columns if name in fields)
-        items = [flat(row, columns) for row in table()]
-        table = lambda: items  # noqa: E731
+        items = rows = [flat(row, columns) for row in rows]
     document = {"items": items, "total": shown.total, "next": shown.next, **more}
-    return Document(document, columns, table, (shown.link,) if shown.link else ())
+    return Document(document, columns, lambda: rows, (shown.link,) if shown.link else ())

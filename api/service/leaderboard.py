@@ -12,9 +12,9 @@ from api.schema.boards import ArchitecturesQuery, BestOfArchitecture, OverviewQu
 from api.schema.scores import LeaderboardQuery, LeaderboardRow, WholeLeaderboardQuery
 from api.schema.table import columns_of
 from api.schema.words import DatasetName
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import Page, narrow, order, page
+from api.service.pagination import Page, narrow, page
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.architectures import order_of_heights
 from benchmark.leaderboard.board import at_field, within_error
@@ -61,14 +61,9 @@ def architectures(known: Knowledge, query: ArchitecturesQuery) -> Document:
     with the runner-up.
     """
     rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
-    shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
-    return list_document(
-        shown,
-        shown.items,
-        columns_of(BestOfArchitecture),
-        fields=query.fields,
-        height_order=documented(order_of_heights(rows)),
-    )
+    heights = documented(order_of_heights(rows))
+    path = "/v1/leaderboard/architectures"
+    return listing(rows, path, query, BestOfArchitecture, height_order=heights)
 
 
 def documented(found: HeightOrder | None) -> dict[str, Any] | None:
@@ -107,8 +102,7 @@ def leaderboard_of_dataset(
         if row["best_of_extractor"] >= query.best_of_extractor
         and bool(row["studies"]) >= query.studied
     ]
-    shown = page(order(rows, query.sort), f"/v1/leaderboard/{dataset}", query)
-    return list_document(shown, shown.items, columns_of(LeaderboardRow), fields=query.fields)
+    return listing(rows, f"/v1/leaderboard/{dataset}", query, LeaderboardRow)
 
 
 def findings(known: Knowledge) -> tuple[Finding, ...]:

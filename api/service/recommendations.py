@@ -104,7 +104,7 @@ def recommended_designs(known: Knowledge, query: RequirementsQuery) -> Document:
     """Every calibration that meets the requirements, as flat rows, paged."""
     shown = _design_page(_ask(known, query), query)
     items = [row.model_dump() for row in shown.items]
-    return list_document(shown, items, columns_of(RecommendationRow))
+    return list_document(shown, items, RecommendationRow, query=query)
 
 
 def _ask(known: Knowledge, query: Requirements) -> Answer:

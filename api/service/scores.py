@@ -5,18 +5,15 @@ from __future__ import annotations
 from api.schema.assessment import Sweep, SweepsQuery
 from api.schema.curves import CurveRow, CurvesQuery
 from api.schema.scores import Score, ScoresQuery
-from api.schema.table import columns_of
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import narrow, order, page
+from api.service.pagination import narrow
 
 
 def results(known: Knowledge, query: ScoresQuery) -> Document:
     """Return scores: a row per data set, condition, extractor and model, including failures."""
     names = ("dataset", "condition", "extractor", "model")
-    rows = order(narrow(known.measurements.scores, query, names), query.sort)
-    shown = page(rows, "/v1/results", query)
-    return list_document(shown, shown.items, columns_of(Score), fields=query.fields)
+    return listing(narrow(known.measurements.scores, query, names), "/v1/results", query, Score)
 
 
 def sweeps(known: Knowledge, query: SweepsQuery) -> Document:
@@ -26,8 +23,7 @@ def sweeps(known: Knowledge, query: SweepsQuery) -> Document:
     sweep gives the reason why an extractor is not measured.
     """
     rows = narrow(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
-    shown = page(order(rows, query.sort), "/v1/sweeps", query)
-    return list_document(shown, shown.items, columns_of(Sweep), fields=query.fields)
+    return listing(rows, "/v1/sweeps", query, Sweep)
 
 
 def curves(known: Knowledge, query: CurvesQuery) -> Document:
@@ -37,5 +33,4 @@ def curves(known: Knowledge, query: CurvesQuery) -> Document:
     test split. CSV: a row per pipeline, without the points.
     """
     rows = narrow(known.measurements.curves, query, ("dataset", "extractor", "model"))
-    shown = page(order(rows, query.sort), "/v1/curves", query)
-    return list_document(shown, shown.items, columns_of(CurveRow), fields=query.fields)
+    return listing(rows, "/v1/curves", query, CurveRow)

@@ -6,10 +6,8 @@ from dataclasses import asdict
 from typing import Any
 
 from api.schema.search import Found, SearchQuery
-from api.schema.table import columns_of
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import page
 
 
 def search(known: Knowledge, query: SearchQuery) -> Document:
@@ -23,5 +21,4 @@ def search(known: Knowledge, query: SearchQuery) -> Document:
         entry = asdict(hit.entry)
         members = {name: entry[name] for name in ("kind", "id", "title", "address")}
         ranked.append({"rank": rank, **members, "excerpt": hit.excerpt, "score": hit.score})
-    shown = page(ranked, "/v1/search", query)
-    return list_document(shown, shown.items, columns_of(Found))
+    return listing(ranked, "/v1/search", query, Found)

@@ -17,9 +17,8 @@ from dataclasses import replace
 from api.schema.studies import AttributeValue, Edition, StudiesQuery, StudyRow
 from api.schema.table import columns_of
 from api.schema.words import StudyKey
-from api.service.documents import Document, list_document
+from api.service.documents import Document, listing
 from api.service.knowledge import Knowledge
-from api.service.pagination import order, page
 from benchmark.leaderboard.headlines import read_differences
 from registry.fidelity.evidence import SCORE_FACTOR, own_error, reason_for_score
 from registry.fidelity.runnable import RunnablePipeline
@@ -36,16 +35,9 @@ def studies(known: Knowledge, query: StudiesQuery) -> Document:
     """
     known = known.of(query.edition)
     chosen = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
-    rows = order([_row(study, known) for study in chosen], query.sort)
-    shown = page(rows, "/v1/studies", query)
-    found = list_document(
-        shown,
-        shown.items,
-        columns_of(StudyRow),
-        lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
-        fields=query.fields,
-    )
-    return found if query.fields else replace(found, cited=shown.items)
+    rows = [_row(study, known) for study in chosen]
+    found = listing(rows, "/v1/studies", query, StudyRow, lambda items: [*map(_flat, items)])
+    return found if query.fields else replace(found, cited=found.document["items"])
 
 
 def editions(known: Knowledge) -> Document:
@@ -134,9 +126,10 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
 _NUMBERS = ("status", "own_error_deg", "rms_deg", "bound_deg", "over_bound", "availability")
 
 
-def _said(item: Mapping[str, Any]) -> list[str]:
-    """Return the confirmations of a study in words, for a cell of a table."""
-    return [f"{one['name']}, {one['date']}: {one['confirms']}" for one in item["verified"]]
+def _flat(item: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a study as a row of the table: values by attribute, confirmations in words."""
+    said = [f"{one['name']}, {one['date']}: {one['confirms']}" for one in item["verified"]]
+    return {**item, **item["values"], "verified": said}
 
 
 def _scores(pipeline: RunnablePipeline, known: Knowledge) -> list[dict[str, Any]]:

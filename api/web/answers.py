@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Mapping, Sequence
-from typing import Any, ClassVar, Self
+from collections.abc import Callable, Coroutine
+from typing import Any, ClassVar
 from urllib.parse import quote
 
 from fastapi import Request, Response
@@ -13,8 +13,7 @@ from pydantic_core import to_json
 
 from api import citations
 from api.schema.former_names import with_former_names
-from api.schema.table import csv_of
-from api.service.documents import Document, Row
+from api.service.documents import Document
 from api.service.problems import Problem, Violation
 from api.web.negotiation import (
     CITATIONS,
@@ -35,32 +34,17 @@ Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
 class Answer(JSONResponse):
-    """A document that can be a table too. NaN and infinities are null in JSON.
+    """A document of the service; in its other media types where it has them.
 
-    `columns`: of the CSV, as `api.schema.table.columns_of` names them. `status_code`: which FastAPI
-    documents by its default.
+    NaN and infinities are null in JSON. FastAPI documents the default of `status_code`.
     """
 
     media_types: ClassVar[tuple[str, ...]] = (JSON, CSV)
 
-    def __init__(
-        self,
-        document: Mapping[str, Any],
-        columns: Sequence[str],
-        rows: Callable[[], Sequence[Row]],
-        links: Sequence[str] = (),
-        status_code: int = 200,
-    ) -> None:
-        super().__init__(document, status_code)
-        self.document = document
-        self.columns = columns
-        self.rows = rows
-        link(self, *links)
-
-    @classmethod
-    def of(cls, found: Document) -> Self:
-        """Return a document of the service as an answer."""
-        return cls(found.document, found.columns, found.rows, found.links)
+    def __init__(self, found: Document, status_code: int = 200) -> None:
+        super().__init__(found.document, status_code)
+        self.found = found
+        link(self, *found.links)
 
     def render(self, content: Any) -> bytes:
         """Return the JSON."""
@@ -68,7 +52,21 @@ class Answer(JSONResponse):
 
     def representation(self, wanted: str) -> Response:
         """Return the answer in a media type."""
-        return self.written(csv_of(self.columns, self.rows()), CSV) if wanted == CSV else self
+        if wanted == CSV:
+            return self.written(self.found.table(), CSV)
+        if wanted == PLOTLY:
+            return Specification(to_json(self.found.plotly))
+        form = next((name for name, kind in CITATIONS.items() if kind == wanted), None)
+        return self if form is None else self._cited(form)
+
+    def _cited(self, form: str) -> Response:
+        """Return references to the studies."""
+        if self.found.cited is None:
+            error = Violation("fields", form, "no columns beside references; leave out fields")
+            raise Problem(400, "not-combinable", errors=[error])
+        saved = f'attachment; filename="{self.found.saved_as}.{citations.SUFFIXES[form]}"'
+        text = citations.FORMS[form](self.found.cited)
+        return self.written(text, CITATIONS[form], **{"Content-Disposition": saved})
 
     def written(self, text: str, wanted: str, **headers: str) -> Response:
         """Return another representation of the answer, with its links."""
@@ -80,47 +78,12 @@ class CitedAnswer(Answer):
     """An answer whose studies can be had as references, too."""
 
     media_types: ClassVar[tuple[str, ...]] = (JSON, CSV, *CITATIONS.values())
-    cited: Sequence[Row] | None
-    saved_as: str
-
-    @classmethod
-    def of(cls, found: Document) -> Self:
-        """Return a document of the service as an answer."""
-        made = super().of(found)
-        made.cited, made.saved_as = found.cited, found.saved_as
-        return made
-
-    def representation(self, wanted: str) -> Response:
-        """Return the answer in a media type."""
-        form = next((name for name, kind in CITATIONS.items() if kind == wanted), None)
-        if form is None:
-            return super().representation(wanted)
-        if self.cited is None:
-            error = Violation("fields", form, "no columns beside references; leave out fields")
-            raise Problem(400, "not-combinable", errors=[error])
-        saved = f'attachment; filename="{self.saved_as}.{citations.SUFFIXES[form]}"'
-        text = citations.FORMS[form](self.cited)
-        return self.written(text, wanted, **{"Content-Disposition": saved})
 
 
 class FigureAnswer(Answer):
     """An answer that Plotly can draw, too."""
 
     media_types: ClassVar[tuple[str, ...]] = (JSON, CSV, PLOTLY)
-    plotly: Mapping[str, Any] | None
-
-    @classmethod
-    def of(cls, found: Document) -> Self:
-        """Return a document of the service as an answer."""
-        made = super().of(found)
-        made.plotly = found.plotly
-        return made
-
-    def representation(self, wanted: str) -> Response:
-        """Return the answer in a media type."""
-        if wanted != PLOTLY:
-            return super().representation(wanted)
-        return Specification(to_json(self.plotly))
 
 
 class Specification(Response):

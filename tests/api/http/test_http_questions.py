@@ -57,11 +57,11 @@ def understood(known: Knowledge, query: Asked) -> Document:
 
 
 async def by_query(known: Known, query: Annotated[Asked, Query()]) -> Answer:
-    return Answer(query.model_dump(), (), list)
+    return Answer(Document(query.model_dump()))
 
 
 async def by_body(body: Annotated[AskedInBody, Body()]) -> Answer:
-    return Answer(body.model_dump(), (), list)
+    return Answer(Document(body.model_dump()))
 
 
 def service() -> FastAPI:
