@@ -65,9 +65,7 @@ def read_checksums(directory: Path, name: str = CHECKSUMS) -> dict[str, str]:
 
 
 def differences(
-    directory: Path,
-    names: Iterable[str] | None = None,
-    coming: Mapping[str, str] | None = None,
+    directory: Path, names: Iterable[str] | None = None, coming: Mapping[str, str] | None = None
 ) -> list[tuple[str, str]]:
     """Find what does not hold: (file, what is wrong with it), sorted; empty where all holds.
 

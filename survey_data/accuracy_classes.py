@@ -31,10 +31,7 @@ class ClassDisagreement:
 def accuracy_class(taxonomy: pd.DataFrame, accuracy_deg: float) -> str:
     """Return the accuracy class of an accuracy in degrees (min_deg <= accuracy < max_deg).
 
-    Raises
-    ------
-    LookupError
-        No class holds it (negative or not a number).
+    LookupError: no class holds it (negative or not a number).
     """
     return _within(_limits(taxonomy), accuracy_deg)
 

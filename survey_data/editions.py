@@ -14,12 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from survey_data.descriptor import (
-    DATA_DIRECTORY,
-    descriptor,
-    file_name,
-    table_names,
-)
+from survey_data.descriptor import DATA_DIRECTORY, descriptor, file_name, table_names
 from survey_data.json_data import JsonData
 
 Choice = Literal["survey", "all"]
@@ -58,10 +53,7 @@ class Edition(JsonData):
 def editions(directory: Path = DATA_DIRECTORY) -> tuple[Edition, Edition]:
     """Return the survey's edition and its extension, as they are in a folder of tables.
 
-    Raises
-    ------
-    OSError
-        A table cannot be read.
+    OSError: A table cannot be read.
     """
     mapped, others = _years("studies", directory), _years("extension_studies", directory)
     last = max(mapped)

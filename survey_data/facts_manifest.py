@@ -49,10 +49,7 @@ def require_unchanged(directory: Path | str = DATA_DIRECTORY) -> None:
 def renew(directory: Path | str = DATA_DIRECTORY) -> list[str]:
     """Take changes by hand into the manifest; return the files that had any.
 
-    Raises
-    ------
-    SurveyDataError
-        The tables are not valid; the manifest is left as it is.
+    SurveyDataError: the tables are not valid; the manifest is left as it is.
     """
     from survey_data.validation.validate import validate  # noqa: PLC0415 - frictionless, half a second
 

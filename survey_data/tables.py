@@ -9,13 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from files.reading import parse_decimal, parse_integer
-from survey_data.descriptor import (
-    DATA_DIRECTORY,
-    column_types,
-    file_name,
-    primary_key,
-    table_names,
-)
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, primary_key, table_names
 from survey_data.editions import BY_STUDY, EXTENSION, EXTENSION_TABLES, SURVEY, Choice
 from survey_data.problems import Problem, SurveyDataError
 from survey_data.table_records import Records, read_table_records
@@ -72,11 +66,8 @@ class SurveyTables:
     def edition(self, name: Choice) -> SurveyTables:
         """Return the tables of an edition, with a column `edition` in the table of studies.
 
-        Parameters
-        ----------
-        name : {"survey", "all"}
-            ``all`` has the rows of studies that the survey does not map below its own, in
-            `studies`, `attributes`, `roles` and `architectures`.
+        `name`: {"survey", "all"} ``all`` has the rows of studies that the survey does not map below
+        its own, in `studies`, `attributes`, `roles` and `architectures`.
         """
         frames = {"studies": self.studies.assign(edition=SURVEY)}
         if name == "all":
@@ -94,11 +85,8 @@ def load(directory: str | Path | None = None) -> SurveyTables:
 
     Form, types and keys are checked here, meaning by `validate`.
 
-    Raises
-    ------
-    SurveyDataError
-        A file is missing or broken, a table has no rows or a key twice, or a cell is not of its
-        column's type; names file, row and column.
+    SurveyDataError: A file is missing or broken, a table has no rows or a key twice, or a cell is
+    not of its column's type; names file, row and column.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     frames: dict[str, pd.DataFrame] = {}

@@ -112,11 +112,7 @@ class _Programme:
 
     def solve(self) -> int | None:
         """Return the smallest cost; None where nothing keeps all rows."""
-        from scipy.optimize import (  # noqa: PLC0415 - SciPy, at the first use
-            Bounds,
-            LinearConstraint,
-            milp,
-        )
+        from scipy.optimize import Bounds, LinearConstraint, milp  # noqa: PLC0415 - SciPy, at the first use
 
         if not self.cost:
             return None

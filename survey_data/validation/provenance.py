@@ -92,8 +92,5 @@ RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("attributes",), _evidence_is_told),
     (("attributes", "roles"), _roles_are_of_methods),
     (("attributes", "architectures"), _sensors_use_every_value),
-    (
-        ("taxonomy", "attributes", "compensated_models", "method_variants"),
-        _models_are_of_the_study,
-    ),
+    (("taxonomy", "attributes", "compensated_models", "method_variants"), _models_are_of_the_study),
 )

@@ -22,13 +22,7 @@ from survey_data.problems import Problem
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
 from survey_data.validation import citations, provenance
-from survey_data.validation.cells import (
-    Frames,
-    Rule,
-    known_values,
-    problem,
-    texts,
-)
+from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 from survey_data.validation.extension import check_extension
 
 

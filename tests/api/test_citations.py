@@ -39,8 +39,7 @@ KINDS = {
 
 def read_bibtex(text: str) -> list[Any]:
     library = bibtexparser.parse_string(
-        text,
-        append_middleware=[SeparateCoAuthors(), LatexDecodingMiddleware(), SplitNameParts()],
+        text, append_middleware=[SeparateCoAuthors(), LatexDecodingMiddleware(), SplitNameParts()]
     )
     assert library.failed_blocks == []
     return list(library.entries)

@@ -227,7 +227,7 @@ def test_a_confirmed_identity_is_replaced_only_by_name(copy: Any) -> None:
     path = offer(copy, text)
     plan = import_bibliography(path, copy.directory, apply=True)
     assert [(d.column, d.kind) for d in plan.differences] == [
-        *(("title", "conflict"), ("year", "kept")),
+        *(("title", "conflict"), ("year", "kept"))
     ]
     assert (plan.written, plan.conflicts) == (0, ("Chang2008",))
     plan = import_bibliography(path, copy.directory, replace_studies=["Chang2008"], apply=True)

@@ -157,9 +157,7 @@ def test_a_printed_cell_must_be_carried_and_a_carried_cell_printed(copy: Any) ->
     assert any(p.file == "study_tables.csv" and "Chang2008" in p.message for p in problems)
 
 
-def test_a_kind_of_a_printed_label_agrees_with_it_and_another_label_s_does_not(
-    copy: Any,
-) -> None:
+def test_a_kind_of_a_printed_label_agrees_with_it_and_another_label_s_does_not(copy: Any) -> None:
     rows = copy.rows("attributes")
     row = next(i for i, c in enumerate(rows, 1) if c[:3] == ["OKeefe2017", "model", "ECM/Noise"])
     copy.set("attributes", row, "value", "ECM/Angular loss")  # printed as ECM

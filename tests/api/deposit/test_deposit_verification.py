@@ -8,12 +8,7 @@ import pytest
 from api.deposit.crate import CRATE
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
-from files.checksums import (
-    CHECKSUMS,
-    read_checksums,
-    sha256,
-    write_checksums,
-)
+from files.checksums import CHECKSUMS, read_checksums, sha256, write_checksums
 from files.reading import FileRefusedError
 from tests.api.deposit.test_deposit import files
 

@@ -32,8 +32,7 @@ def test_the_guide_is_served_below_its_own_address(atlas, place):
 
 
 @pytest.mark.parametrize(
-    "path",
-    ["nothing.html", "models", "out.html", "%2e%2e/beside.html", "/etc/hostname", "%00"],
+    "path", ["nothing.html", "models", "out.html", "%2e%2e/beside.html", "/etc/hostname", "%00"]
 )
 def test_only_files_of_the_site_are_served(atlas, place, path):
     answer = atlas.get(f"/guide/{path}")

@@ -190,8 +190,7 @@ def test_recommendations_carry_what_is_measured(measured):
 
 
 @pytest.mark.parametrize(
-    "path",
-    ["/v1/results", "/v1/leaderboard/cmos-single-aperture", "/v1/results?extractor=bcm"],
+    "path", ["/v1/results", "/v1/leaderboard/cmos-single-aperture", "/v1/results?extractor=bcm"]
 )
 def test_where_nothing_is_published_lists_are_empty(unmeasured, path):
     assert unmeasured.get(path).json() == {"items": [], "total": 0, "next": None}

@@ -13,16 +13,7 @@ from hypothesis import strategies as st
 from pydantic import Field
 
 from api.schema.base import Question
-from api.schema.parameters import (
-    DEFAULT_PAGE,
-    GIVEN,
-    NUMBER,
-    Cursor,
-    Flag,
-    Limit,
-    OneOf,
-    Several,
-)
+from api.schema.parameters import DEFAULT_PAGE, GIVEN, NUMBER, Cursor, Flag, Limit, OneOf, Several
 from api.server import handlers
 from api.service.asking import ask
 from api.service.documents import Document

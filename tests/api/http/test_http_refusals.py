@@ -44,8 +44,7 @@ def first(document):
 
 
 @pytest.mark.parametrize(
-    ("path", "nearest"),
-    [("/v1/study", "/v1/studies"), ("/v1/studies/", "/v1/studies")],
+    ("path", "nearest"), [("/v1/study", "/v1/studies"), ("/v1/studies/", "/v1/studies")]
 )
 def test_an_unknown_path_is_a_404_with_the_nearest(atlas, path, nearest):
     assert first(problem(atlas.get(path), 404))["nearest"] == nearest

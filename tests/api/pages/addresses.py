@@ -53,7 +53,4 @@ KINDS = {
     "nowhere": "/nowhere",
 }
 #: Pages that are not made of the templates, but stand in the same place.
-BESIDE = {
-    "guide": "/guide/index.html",
-    "guide, prose": "/guide/guide/scores.html",
-}
+BESIDE = {"guide": "/guide/index.html", "guide, prose": "/guide/guide/scores.html"}

@@ -75,9 +75,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def test_one_file_is_a_whole_experiment(
-    folder: Path,
-    client_of: Callable[[FastAPI], Client],
-    capsys: pytest.CaptureFixture[str],
+    folder: Path, client_of: Callable[[FastAPI], Client], capsys: pytest.CaptureFixture[str]
 ) -> None:
     record = folder / "record"
     command = ["cubes", "--directory", str(record)]

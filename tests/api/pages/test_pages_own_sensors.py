@@ -40,10 +40,7 @@ def test_a_page_shows_the_sensor_with_scores_of_its_own_record(atlas: Client, ke
             assert score["rms_deg"] == by[place]
 
 
-@pytest.mark.parametrize(
-    ("key", "unknown", "of"),
-    [("Rufino2017", 5, 5), ("deBoer2013", 2, 5)],
-)
+@pytest.mark.parametrize(("key", "unknown", "of"), [("Rufino2017", 5, 5), ("deBoer2013", 2, 5)])
 def test_unknown_dimensions_are_counted_where_the_grade_is_shown(
     atlas: Client, key: str, unknown: int, of: int
 ) -> None:

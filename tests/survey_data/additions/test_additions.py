@@ -199,7 +199,7 @@ def test_uncommented_lines_of_an_empty_template_make_a_study() -> None:
             "year": "2030",
             "title": "T",
             "url": "https://arxiv.org/abs/2030.00001",
-        },
+        }
     )
     text = text.replace('type = ""', 'type = "report"').replace(
         'identity = ""', 'identity = "recalled"'
