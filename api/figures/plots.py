@@ -1,4 +1,7 @@
-"""Traces over axes, drawn by Matplotlib: scatter, bar and heatmap of a Plotly specification."""
+"""Traces over axes, drawn by Matplotlib: scatter, bar and heatmap of a Plotly specification.
+
+Of each only what figures here use.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
@@ -17,27 +20,9 @@ from api.figures.specification import AXIS, LINE, SURFACE, TEXT, colour
 
 Trace = Mapping[str, Any]
 TYPES = {"scatter", "bar", "heatmap"}
-_MARKERS = {
-    "circle": "o",
-    "square": "s",
-    "diamond": "D",
-    "cross": "P",
-    "x": "X",
-    "star": "*",
-    "triangle-up": "^",
-    "triangle-down": "v",
-    "line-ns": "|",
-    "line-ew": "_",
-}
-_DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
+_MARKERS = {"circle": "o", "square": "s", "diamond": "D", "x": "X", "line-ns": "|", "line-ew": "_"}
+_DASHES = {"solid": "-", "dash": "--", "dot": ":"}
 _STEPS = {"linear": "default", "hv": "steps-post", "vh": "steps-pre"}
-_ALIGNED = {
-    "top center": ("center", "bottom", 0, 6),
-    "bottom center": ("center", "top", 0, -6),
-    "middle right": ("left", "center", 7, 0),
-    "middle left": ("right", "center", -7, 0),
-    "middle center": ("center", "center", 0, 0),
-}
 
 
 def paint(of: str) -> Any:
@@ -142,28 +127,24 @@ class _Over:
         if "markers" in mode:
             handle = self._intervals(trace, x, y, self._marks(trace, x, y, usual))
         if "text" in mode:
-            across, up, dx, dy = _ALIGNED[trace.get("textposition", "middle center")]
             for one, place in zip(trace["text"], zip(x, y, strict=True), strict=True):
-                if one and np.isfinite(place).all():
-                    self.axes.annotate(one, place, (dx, dy), textcoords="offset points",
-                                       ha=across, va=up, fontsize=10)  # fmt: skip
+                self.axes.annotate(one, place, (0, 6), textcoords="offset points", ha="center",
+                                   va="bottom", fontsize=10)  # fmt: skip
         return handle
 
     def _marks(self, trace: Trace, x: np.ndarray, y: np.ndarray, usual: str) -> Any:
         marker = trace.get("marker", {})
-        every = [_each(marker.get(name, default), len(x)) for name, default in (
-            ("symbol", "circle"), ("color", usual), ("size", 8), ("opacity", 1.0))]  # fmt: skip
+        size, tone = marker.get("size", 8), paint(marker.get("color", usual))
+        given = marker.get("symbol", "circle")
+        symbols = given if isinstance(given, list) else [given] * len(x)
         handle = None
-        styles = list(zip(*every, strict=True))
-        for style in dict.fromkeys(styles):
-            symbol, tone, size, opacity = style
-            chosen = [one == style for one in styles]
+        for symbol in dict.fromkeys(symbols):
+            chosen = [one == symbol for one in symbols]
             hollow = symbol.endswith("-open")
             (drawn,) = self.axes.plot(
-                x[chosen], y[chosen], _MARKERS[symbol.removesuffix("-open")], color=paint(tone),
-                markersize=size, alpha=opacity, linestyle="none",
-                markerfacecolor="none" if hollow else paint(tone),
-                markeredgecolor=paint(tone) if hollow or symbol.startswith("line") else SURFACE,
+                x[chosen], y[chosen], _MARKERS[symbol.removesuffix("-open")], color=tone,
+                markersize=size, alpha=1.0, linestyle="none", markerfacecolor="none" if hollow else tone,
+                markeredgecolor=tone if hollow or symbol.startswith("line") else SURFACE,
                 markeredgewidth=1.4 if hollow or symbol.startswith("line") else 0.6,
             )  # fmt: skip
             handle = handle or drawn
@@ -172,9 +153,8 @@ class _Over:
     def _intervals(self, trace: Trace, x: np.ndarray, y: np.ndarray, handle: Any) -> Any:
         for letter in "xy":
             given = trace.get(f"error_{letter}")
-            if given and given.get("visible", True):
-                up = self.at("", given["array"])
-                down = self.at("", given.get("arrayminus") or given["array"])
+            if given:
+                up, down = self.at("", given["array"]), self.at("", given["arrayminus"])
                 tone = given.get("color") or (handle.get_color() if handle else TEXT)
                 self.axes.errorbar(
                     x, y, fmt="none", ecolor=paint(tone), elinewidth=given.get("thickness", 1.2),
@@ -189,8 +169,8 @@ class _Over:
         length = self.at("", trace["x" if lying else "y"])
         start = [self.ends.get(("bar", at), 0.0) for at in place]
         self.ends |= {("bar", p): s + n for p, s, n in zip(place, start, length, strict=True)}
-        tone = _each(trace.get("marker", {}).get("color", usual), len(place))
-        style: Any = {"color": [paint(one) for one in tone], "edgecolor": SURFACE, "linewidth": 0.8}
+        tone = paint(trace.get("marker", {}).get("color", usual))
+        style: Any = {"color": tone, "edgecolor": SURFACE, "linewidth": 0.8}
         if lying:
             return self.axes.barh(place, length, left=start, **style)
         return self.axes.bar(place, length, bottom=start, **style)
@@ -198,15 +178,8 @@ class _Over:
     def heat(self, trace: Trace) -> None:
         """Draw cells; one without a value stays empty, with its text."""
         z = np.array([[np.nan if v is None else v for v in row] for row in trace["z"]], dtype=float)
-        known = z[np.isfinite(z)]
-        low = trace.get("zmin", known.min() if known.size else 0.0)
-        high = trace.get("zmax", known.max() if known.size else 1.0)
-        shades = [(at, to_rgb(paint(one)[:3] if one.startswith("rgb") else one))
-                  for at, one in trace["colorscale"]]  # fmt: skip
-        tones = LinearSegmentedColormap.from_list("shades", shades)
-        norm = Normalize(low, high if high > low else low + 1)
+        norm = Normalize(trace["zmin"], trace["zmax"])
         across, down = self.at("x", trace["x"]), self.at("y", trace["y"])
-        said = {"%{text}": trace.get("text"), "%{z}": trace["z"]}.get(trace.get("texttemplate", ""))
         size = min(12.0, 5200 / max(len(across), 1) / 10)
         for row, y in enumerate(down):
             for column, x in enumerate(across):
@@ -215,41 +188,31 @@ class _Over:
                 if np.isfinite(value):
                     # a shade of the scale itself, which a dark page has its own colour of
                     nearest = min(trace["colorscale"], key=lambda s: abs(s[0] - norm(value)))
-                    face = nearest[1] if len(shades) > 1 else tones(norm(value))
+                    face = nearest[1]
                 edge: Any = {"edgecolor": SURFACE if face != "none" else LINE, "linewidth": 1.0}
                 self.axes.add_patch(
                     Rectangle((x - 0.47, y - 0.46), 0.94, 0.92, facecolor=face, **edge)
                 )
-                text = said[row][column] if said else None
-                if text not in (None, ""):
+                if text := trace["text"][row][column]:
                     dark = face != "none" and sum(to_rgb(face)) < 1.5
-                    self.axes.text(x, y, str(text), ha="center", va="center", fontsize=size,
+                    self.axes.text(x, y, text, ha="center", va="center", fontsize=size,
                                    color=SURFACE if dark else TEXT)  # fmt: skip
         self.axes.set(xlim=(across.min() - 0.5, across.max() + 0.5),
                       ylim=(down.min() - 0.5, down.max() + 0.5))  # fmt: skip
 
     def notes(self, layout: Mapping[str, Any], pair: tuple[str, str]) -> None:
         """Draw lines and texts that the layout places by these axes' values."""
-        for shape in layout.get("shapes", ()):
-            if (shape.get("xref", "x"), shape.get("yref", "y")) == pair:
-                x = self.at("x", [shape["x0"], shape["x1"]])
-                y = self.at("y", [shape["y0"], shape["y1"]])
-                line = shape.get("line", {})
-                self.axes.plot(x, y, _DASHES[line.get("dash", "solid")], zorder=0.5,
-                               color=paint(line.get("color", AXIS)),
-                               linewidth=line.get("width", 1))  # fmt: skip
+        for shape in layout.get("shapes", ()) if pair == ("x", "y") else ():
+            x, y = ([shape[f"{letter}0"], shape[f"{letter}1"]] for letter in "xy")
+            line = shape["line"]
+            self.axes.plot(x, y, zorder=0.5, color=line["color"], linewidth=line["width"])
         for note in layout.get("annotations", ()):
-            if (note.get("xref"), note.get("yref")) == pair:
-                across = {"auto": "center"}.get(note.get("xanchor", "auto"), note.get("xanchor"))
-                up = {"auto": "center", "middle": "center"}.get(
-                    note.get("yanchor", "auto"), note.get("yanchor")
-                )
-                (x,), (y,) = self.at("x", [note["x"]]), self.at("y", [note["y"]])
+            if (note["xref"], note["yref"]) == pair:
                 offset = (note.get("xshift", 0), note.get("yshift", 0))
                 self.axes.annotate(
-                    re.sub(r"<.*?>", "", note["text"]), (x, y), offset, ha=across, va=up,
-                    textcoords="offset points", fontsize=note.get("font", {}).get("size", 11),
-                    color=note.get("font", {}).get("color", TEXT), annotation_clip=False,
+                    note["text"], (note["x"], note["y"]), offset, va="center", fontsize=11,
+                    ha=note.get("xanchor", "center"), textcoords="offset points", color=TEXT,
+                    annotation_clip=False,
                 )  # fmt: skip
 
     def finish(self) -> None:
@@ -280,11 +243,9 @@ class _Over:
             low, high = of.get_view_interval()
             of.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300 * low else (1.0,)))
         if names is None and "ticktext" not in axis:
-            suffix = axis.get("ticksuffix", "")
-            of.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}{suffix}"))
+            of.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         of.set_minor_locator(NullLocator())
-        title = axis.get("title", {})
-        of.set_label_text(title if isinstance(title, str) else title.get("text", ""))
+        of.set_label_text(axis.get("title", {}).get("text", ""))
         if axis.get("showgrid", names is None):
             of.grid(visible=True, color=LINE, linewidth=0.8)
         of.set_tick_params(color=AXIS, labelcolor=TEXT, length=0 if names else 3)
@@ -294,15 +255,6 @@ class _Over:
 
     def _ends(self, letter: str, axis: Mapping[str, Any]) -> None:
         if "range" in axis:
-            ends = axis["range"]
-            shown = [10.0**end for end in ends] if axis.get("type") == "log" else ends
-            self.axes.set(**{f"{letter}lim": shown})
-        elif axis.get("rangemode") == "tozero":
-            self.axes.set(**{f"{letter}lim": (0, None)})
+            self.axes.set(**{f"{letter}lim": axis["range"]})
         if axis.get("autorange") == "reversed":
             getattr(self.axes, f"{letter}axis").set_inverted(True)
-
-
-def _each(given: Any, count: int) -> list[Any]:
-    """Return a value for each of `count` marks."""
-    return list(given) if isinstance(given, list | tuple) else [given] * count

@@ -6,12 +6,10 @@ such files beside it, the distribution's metadata does.
 
 from __future__ import annotations
 
-import os
-import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import UTC, date, datetime
+from datetime import date
 from functools import cache
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
@@ -23,7 +21,6 @@ from api.metadata.citation import authors as authors_of
 
 DISTRIBUTION = "sun-sensor-atlas"
 ROOT = Path(__file__).resolve().parents[2]
-_DATE = re.compile(r"^date-released:\s*[\"']?(\d{4}-\d{2}-\d{2})[\"']?\s*$", re.MULTILINE)
 
 
 class MissingFileError(FileNotFoundError):
@@ -56,18 +53,16 @@ class Identity:
 def identity() -> Identity:
     """Say who the running code is.
 
-    MissingFileError where a licence is not found.
+    MissingFileError where a licence or CITATION.cff is not found.
     """
-    number, summary, authors = _project()
-    written = _write("CITATION.cff")
-    released = _release(written)
-    citation = written or generated_citation(number, summary, authors, released)
+    number, summary = _project()
+    citation = _licence("CITATION.cff")
     return Identity(
         title="Sun Sensor Atlas",
         version=number,
         summary=summary,
         authors=authors_of(citation, "CITATION.cff"),
-        released=released,
+        released=date.fromisoformat(str(yaml.safe_load(citation)["date-released"])),
         citation=citation,
         code_licence=_licence("LICENSE"),
         data_licence=_licence("survey_data/LICENSE"),
@@ -77,22 +72,6 @@ def identity() -> Identity:
 def version() -> str:
     """Return the version of the running code; licences are not looked for."""
     return _project()[0]
-
-
-def generated_citation(number: str, summary: str, authors: tuple[str, ...], released: date) -> str:
-    """Write a CITATION.cff from the metadata, for an installation without the file."""
-    document = {
-        "cff-version": "1.2.0",
-        "message": "If you use the dataset, the benchmark or the code, please cite it as below.",
-        "type": "software",
-        "title": "Sun Sensor Atlas",
-        "abstract": summary,
-        "authors": [{"name": name} for name in authors],
-        "version": number,
-        "date-released": released.isoformat(),
-        "license": ["MIT", "CC-BY-4.0"],
-    }
-    return str(yaml.safe_dump(document, sort_keys=False, allow_unicode=True))
 
 
 def _checkout() -> bool:
@@ -106,44 +85,28 @@ def _installed() -> Distribution | None:
         return None
 
 
-def _project() -> tuple[str, str, tuple[str, ...]]:
+def _project() -> tuple[str, str]:
+    """Return version and summary."""
     # The checkout first: an editable installation's metadata are those of the day it was made.
     if _checkout():
         project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-        authors = tuple(author["name"] for author in project["authors"])
-        return project["version"], project["description"], authors
+        return project["version"], project["description"]
     installed = _installed()
     if installed is None:
         raise MissingFileError(f"neither {ROOT / 'pyproject.toml'} nor an installed {DISTRIBUTION}")
-    metadata = installed.metadata
-    names = (metadata["Author"] or metadata["Author-email"] or "").split(", ")
-    return metadata["Version"], metadata["Summary"], tuple(n for n in names if n)
-
-
-def _release(citation: str | None) -> date:
-    found = _DATE.search(citation or "")
-    if found:
-        return date.fromisoformat(found[1])
-    # Reproducible-builds convention; without it the only date an installation knows is today's.
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
-    return moment.date()
+    return installed.metadata["Version"], installed.metadata["Summary"]
 
 
 def _licence(name: str) -> str:
-    text = _write(name)
-    if text is None:
-        raise MissingFileError(f"no {name} at {ROOT} or in the metadata of {DISTRIBUTION}")
-    return text
-
-
-def _write(name: str) -> str | None:
     # survey_data/LICENSE is package data, beside this package in a checkout and in a wheel alike.
     path = ROOT / name
     if path.is_file() and (_checkout() or "/" in name):
         return path.read_text("utf-8")
     installed = _installed()
-    return installed.read_text(f"licenses/{name}") if installed else None
+    text = installed.read_text(f"licenses/{name}") if installed else None
+    if text is None:
+        raise MissingFileError(f"no {name} at {ROOT} or in the metadata of {DISTRIBUTION}")
+    return text
 
 
 LICENCES: Mapping[str, str] = {

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from fastapi import FastAPI
@@ -16,6 +15,7 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddle
 
 from api.http import about, calibrations, files, metadata, tables
 from api.http.openapi import describe
+from api.metadata.identity import version
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
 from api.server.kept import KeptAnswers
@@ -55,7 +55,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     """
     app = FastAPI(
         title="Sun Sensor Atlas",
-        version=_version(),
+        version=version(),
         description=DESCRIPTION,
         openapi_url=None,  # served by a router, as /docs is, which loads no script from elsewhere
         docs_url=None,
@@ -90,11 +90,3 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.knowledge.load_all()
     app.openapi()  # now, as it holds up every answer meanwhile
     yield
-
-
-def _version() -> str:
-    """Return the version of the installed distribution; what says so where it runs uninstalled."""
-    try:
-        return version("sun-sensor-atlas")
-    except PackageNotFoundError:
-        return "0+uninstalled"
