@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
@@ -52,10 +52,6 @@ class Term:
     kind: str
     see: str
     avoided: tuple[str, ...] = ()
-
-    def to_dict(self) -> dict[str, str]:
-        """Return it as plain JSON values, without the words that are avoided."""
-        return {name: said for name, said in asdict(self).items() if name != "avoided"}
 
 
 @cache

@@ -75,16 +75,12 @@ def read_scores(bundle: Path) -> dict[Cell, dict[str, str]]:
         }
 
 
-def repeatable(
-    bundle: Path, scores: Mapping[Cell, Mapping[str, str]], parts: Parts | None = None
-) -> list[Cell]:
+def repeatable(bundle: Path, scores: Mapping[Cell, Mapping[str, str]]) -> list[Cell]:
     """List the scores that can be measured from a bundle's samples alone, in order.
 
     Not those without a number, of models that refuse their calibration.
-
-    `scores`: its rows by cell. `parts`: data sets and implementations; those installed by default.
     """
-    known, whole = parts or installed_parts(), _whole(bundle)
+    known, whole = installed_parts(), _whole(bundle)
     return [
         cell
         for cell, row in scores.items()
@@ -111,15 +107,14 @@ def draw(cells: Sequence[Cell], count: int, seed: int) -> list[Cell]:
     return sorted(sorted(cells, key=lot)[:count])
 
 
-def rescore(bundle: Path, cells: Sequence[Cell], parts: Parts | None = None) -> Iterator[Rescored]:
+def rescore(bundle: Path, cells: Sequence[Cell]) -> Iterator[Rescored]:
     """Measure cells again from a bundle's samples; nothing is simulated.
 
-    `cells`: of `repeatable`, sorted. `parts`: data sets and implementations; those installed by
-    default.
+    `cells`: of `repeatable`, sorted.
 
     UnknownNameError for a data set or an algorithm that is not installed.
     """
-    known, stated = parts or installed_parts(), read_scores(bundle)
+    known, stated = installed_parts(), read_scores(bundle)
     data = cast("KeptStages", _Deposited(bundle, known))
     forget()  # what a process may have simulated before; and then what it read here
     try:

@@ -8,11 +8,11 @@ ahead of it (`<!-- not run: REASON -->`).
 
 from __future__ import annotations
 
-import contextlib
 import io
 import re
 import shlex
 from collections.abc import Iterator
+from contextlib import chdir, nullcontext, redirect_stdout
 from pathlib import Path
 
 from sybil import Document, Example
@@ -21,6 +21,7 @@ from sybil.parsers.markdown.lexers import RawFencedCodeBlockLexer
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
+from files.atomic import temporary_directory
 
 #: How commands begin that no page's test runs: they set up an environment, measure for hours, or
 #: need the page's file.
@@ -50,14 +51,14 @@ def blocks(page: str, text: str) -> Iterator[tuple[str, Example, bool]]:
         yield word, example, _REASON.search(text, 0, example.start) is None
 
 
-def rerun(page: str, text: str, directory: Path) -> str:
-    """Run a page's blocks in a directory; return its text with what they print now.
+def rerun(page: str, text: str, directory: Path | None = None) -> str:
+    """Run a page's blocks in a directory, a new one by default; return its text as they print now.
 
     BlockError where a block fails, or prints what no block behind it shows.
     """
     new, at, behind = "", 0, 0
     printed: str | None = None  # by the block of Python just run
-    with contextlib.chdir(directory):
+    with nullcontext(directory) if directory else temporary_directory() as here, chdir(here):
         for word, example, wanted in blocks(page, text):
             start = example.start + example.parsed.offset
             end = start + len(example.parsed)
@@ -88,7 +89,7 @@ def rerun(page: str, text: str, directory: Path) -> str:
 
 def _python(example: Example) -> str:
     said = io.StringIO()
-    with contextlib.redirect_stdout(said):
+    with redirect_stdout(said):
         PythonEvaluator()(example)
     return _trimmed(said.getvalue())
 

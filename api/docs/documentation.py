@@ -21,7 +21,7 @@ from api.metadata import codemeta
 from api.metadata.identity import identity
 from benchmark.processes import call_to_end
 from benchmark.progress import console_progress
-from files.atomic import replace_file, temporary_directory
+from files.atomic import replace_file
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -67,21 +67,21 @@ def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
     )
 
 
-def regenerate(root: Path = ROOT, *, write: bool = True) -> list[str]:
-    """Renew every page and file of a checkout; return the names of those that were behind."""
-    texts = {page: (root / page).read_text("utf-8") for page in (*PAGES, *RUN)}
+def regenerate(*, write: bool = True) -> list[str]:
+    """Renew every page and file of this checkout; return the names of those that were behind."""
+    texts = {page: (ROOT / page).read_text("utf-8") for page in (*PAGES, *RUN)}
     made: dict[str, Make] = dict(WHOLE)
     made |= {page: partial(renew_parts, page, texts[page], parts) for page, parts in PAGES.items()}
-    made |= {page: partial(_rerun, page, texts[page]) for page in RUN}
+    made |= {page: partial(rerun, page, texts[page]) for page in RUN}
     behind = {}
     with console_progress("documenting") as report:
         for done, (name, make) in enumerate(made.items()):
             report(done, len(made), name)
-            path, new = root / name, make()
+            path, new = ROOT / name, make()
             if not path.is_file() or path.read_text("utf-8") != new:
                 behind[name] = new
     for name, new in behind.items() if write else ():
-        replace_file(root / name, new)
+        replace_file(ROOT / name, new)
     return sorted(behind)
 
 
@@ -95,11 +95,6 @@ def main(arguments: list[str] | None = None) -> int:
         said = "is behind; run `make docs`" if options.check else "renewed"
         sys.stderr.write(f"{name} {said}\n")
     return 1 if behind and options.check else 0
-
-
-def _rerun(page: str, text: str) -> str:
-    with temporary_directory() as scratch:
-        return rerun(page, text, scratch)
 
 
 if __name__ == "__main__":

@@ -143,7 +143,8 @@ class _Over:
             hollow = symbol.endswith("-open")
             (drawn,) = self.axes.plot(
                 x[chosen], y[chosen], _MARKERS[symbol.removesuffix("-open")], color=tone,
-                markersize=size, alpha=1.0, linestyle="none", markerfacecolor="none" if hollow else tone,
+                markersize=size, alpha=1.0, linestyle="none",
+                markerfacecolor="none" if hollow else tone,
                 markeredgecolor=tone if hollow or symbol.startswith("line") else SURFACE,
                 markeredgewidth=1.4 if hollow or symbol.startswith("line") else 0.6,
             )  # fmt: skip

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import Depends, Query, Request
 
-from api.schema.base import NoParameters, OnlyFormat
+from api.schema.base import NoParameters
 from api.service.knowledge import Knowledge
 
 
@@ -22,4 +22,3 @@ async def no_parameters(_query: Annotated[NoParameters, Query()]) -> None:
 
 Known = Annotated[Knowledge, Depends(knowledge)]
 NO_PARAMETERS = Depends(no_parameters)
-TableOnly = Annotated[OnlyFormat, Query()]

@@ -11,8 +11,9 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ParamSpec, TypeVar
 from urllib.parse import quote
 
 import httpx
@@ -40,6 +41,7 @@ _ADVICE = {
 Line = Annotated[str, StringConstraints(pattern=_LINE)]
 R = TypeVar("R", bound="Reply")
 T = TypeVar("T")
+P = ParamSpec("P")
 
 
 class RefusedError(ArchiveError):
@@ -126,6 +128,17 @@ class Entries(Reply):
     entries: Annotated[list[Entry], Field(max_length=1000)]
 
 
+def _tried(method: Callable[P, T]) -> Callable[P, T]:
+    """Return a method of an archive that is tried again after a failure that may pass."""
+
+    @wraps(method)
+    def again(*given: P.args, **named: P.kwargs) -> T:
+        archive: Any = given[0]
+        return archive.retrying(method, *given, **named)  # type: ignore[no-any-return]
+
+    return again
+
+
 class Archive:
     """A conversation with one archive; every method may raise ArchiveError.
 
@@ -159,7 +172,7 @@ class Archive:
             trust_env=server.address.startswith("https:"),
         )
         self.close = self._http.close
-        self._tried = tenacity.Retrying(
+        self.retrying = tenacity.Retrying(
             retry=tenacity.retry_if_exception_type(MomentaryError),
             stop=tenacity.stop_after_attempt(TRIES),
             wait=_pause,
@@ -167,82 +180,71 @@ class Archive:
             reraise=True,
         )
 
+    @_tried
     def create(self, document: dict[str, Any]) -> Record:
         """Open a draft of a new record; where the answer is lost, an empty one may be left over."""
-        return self._tried(lambda: self._ask("POST", _ALL, Record, json=document))
+        return self._ask("POST", _ALL, Record, json=document)
 
+    @_tried
     def new_version(self, record: str) -> Record:
         """Open a draft of the next version with the files of the last, or find the one there is."""
+        draft = self._ask("POST", f"{_at(record)}/versions", Record)
+        if not self._files(draft.id):
+            self._ask("POST", f"{_at(draft.id)}/draft/actions/files-import", Entries)
+        return draft
 
-        def opened() -> Record:
-            draft = self._ask("POST", f"{_at(record)}/versions", Record)
-            if not self._files(draft.id):
-                self._ask("POST", f"{_at(draft.id)}/draft/actions/files-import", Entries)
-            return draft
-
-        return self._tried(opened)
-
+    @_tried
     def draft(self, identifier: str) -> Record | None:
         """Look at a draft; None where there is none."""
-        found = self._tried(self._look, identifier, "/draft")
+        found = self._look(identifier, "/draft")
         # A published record that is being edited has a draft as well: not one for new files.
         return None if found is None or found.is_published else found
 
+    @_tried
     def published(self, identifier: str) -> Record | None:
         """Look at a published record; None where there is none."""
-        return self._tried(self._look, identifier)
+        return self._look(identifier)
 
+    @_tried
     def describe(self, draft: str, document: dict[str, Any]) -> None:
         """Give a draft this description; identifiers reserved for it are kept."""
+        pids = self._ask("GET", f"{_at(draft)}/draft", Record).pids
+        kept = {name: pid.model_dump(exclude_none=True) for name, pid in pids.items()}
+        self._do("PUT", f"{_at(draft)}/draft", json={**document, "pids": kept})
 
-        def described() -> None:
-            pids = self._ask("GET", f"{_at(draft)}/draft", Record).pids
-            kept = {name: pid.model_dump(exclude_none=True) for name, pid in pids.items()}
-            self._do("PUT", f"{_at(draft)}/draft", json={**document, "pids": kept})
-
-        self._tried(described)
-
+    @_tried
     def files(self, draft: str) -> dict[str, Entry]:
         """List the files of a draft by name, halves among them."""
-        return self._tried(self._files, draft)
+        return self._files(draft)
 
+    @_tried
     def send(self, draft: str, name: str, path: Path, md5: str) -> str | None:
         """Declare, send and commit a file in place of one of this name; return its MD5 there."""
         where = f"{_at(draft)}/draft/files"
         one = f"{where}/{quote(name, safe='')}"
+        there = self._files(draft).get(name)
+        if there is not None and there.md5 == md5:
+            return md5
+        if there is not None:
+            self._do("DELETE", one)
+        self._ask("POST", where, Entries, json=[{"key": name}])
+        with path.open("rb") as content:
+            headers = {"Content-Type": "application/octet-stream"}
+            self._do("PUT", f"{one}/content", content=content, headers=headers)
+        return self._ask("POST", f"{one}/commit", Entry).md5
 
-        def sent() -> str | None:
-            there = self._files(draft).get(name)
-            if there is not None and there.md5 == md5:
-                return md5
-            if there is not None:
-                self._do("DELETE", one)
-            self._ask("POST", where, Entries, json=[{"key": name}])
-            with path.open("rb") as content:
-                headers = {"Content-Type": "application/octet-stream"}
-                self._do("PUT", f"{one}/content", content=content, headers=headers)
-            return self._ask("POST", f"{one}/commit", Entry).md5
-
-        return self._tried(sent)
-
+    @_tried
     def delete(self, draft: str, name: str) -> None:
         """Take a file out of a draft."""
+        if name in self._files(draft):
+            self._do("DELETE", f"{_at(draft)}/draft/files/{quote(name, safe='')}")
 
-        def deleted() -> None:
-            if name in self._files(draft):
-                self._do("DELETE", f"{_at(draft)}/draft/files/{quote(name, safe='')}")
-
-        self._tried(deleted)
-
+    @_tried
     def publish(self, draft: str) -> Record:
         """Make a draft public, for good."""
-
-        def published() -> Record:
-            if self._look(draft, "/draft") is None and (public := self._look(draft)) is not None:
-                return public  # by a request whose answer was lost
-            return self._ask("POST", f"{_at(draft)}/draft/actions/publish", Record)
-
-        return self._tried(published)
+        if self._look(draft, "/draft") is None and (public := self._look(draft)) is not None:
+            return public  # by a request whose answer was lost
+        return self._ask("POST", f"{_at(draft)}/draft/actions/publish", Record)
 
     def _files(self, draft: str) -> dict[str, Entry]:
         listed = self._ask("GET", f"{_at(draft)}/draft/files", Entries).entries

@@ -23,7 +23,7 @@ def test_what_is_altered_is_noticed_and_renewed(
     monkeypatch.setattr(documentation, "PAGES", {"page.md": {"one": lambda: "new"}})
     monkeypatch.setattr(documentation, "WHOLE", {"made.svg": lambda: "<svg/>"})
     monkeypatch.setattr(documentation, "RUN", ("run.md",))
-    monkeypatch.setattr(regenerate, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(documentation, "ROOT", tmp_path)
     (tmp_path / "page.md").write_text(PAGE)
     (tmp_path / "run.md").write_text("```python\nprint(2)\n```\n\n```text\n1\n```\n")
     assert documentation.main(["--check"]) == 1
