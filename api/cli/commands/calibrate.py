@@ -11,7 +11,10 @@ import typer
 
 from api.cli.wrong_call import WrongCallError, only_beside
 
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
+
+@app.command()
 def calibrate(
     context: typer.Context,
     *,
