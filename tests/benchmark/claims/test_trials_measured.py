@@ -13,8 +13,8 @@ from benchmark.claims.rules import FIRST_TRIAL, claims
 
 #: Of which one trial takes below a second.
 QUICK = {
-    "C04", "C05", "C06", "C08", "C12", "C15", "C17", "C18", "C19", "C20", "C21", "C22", "C23", "C27",
-    "C32", "C36", "C37", "C38", "C40", "C41", "C42", "C49", "C51",
+    "C04", "C05", "C06", "C08", "C12", "C15", "C17", "C18", "C19", "C20", "C21", "C22", "C23",
+    "C27", "C32", "C36", "C37", "C38", "C40", "C41", "C42", "C49", "C51",
 }  # fmt: skip
 BY_COST = [
     name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
