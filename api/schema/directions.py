@@ -29,8 +29,8 @@ class DirectionRow(Shape):
     specific: str = Field(description="Part of the category.")
     future_directions: str = Field(description="What the survey suggests.")
     question: str = Field(description="What is asked here.")
-    kind: Literal["duel", "paper", "untried"] = Field(
-        description="Decided by families of methods in the record, or by a calculation."
+    kind: Literal["duel", "paper", "trial", "untried"] = Field(
+        description="Decided by families of methods in the record, a calculation or an experiment."
     )
     verdict: Verdict = Field(description="By the rule; open: told apart on too few data sets.")
     text: str = Field(description="What decides, in a sentence.")

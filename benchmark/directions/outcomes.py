@@ -39,6 +39,8 @@ def _outcome(rule: Rule, rows: Sequence[Row]) -> dict[str, Any]:
         found = duels(rule, rows)
         decided, text, unit = verdict(found), _counted(found), "error, first over second"
         value, against = (median(one.ratio for one in found) if found else None), 1.0
+    elif rule.kind == "trial":
+        decided, text, unit = NOT_TRIED, "Not tried yet.", ""
     else:
         decided, text, unit = NOT_TRIED, f"Not tried: {rule.rule}.", ""
     return {

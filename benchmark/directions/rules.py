@@ -15,7 +15,7 @@ from survey_data.table_records import read_records
 if TYPE_CHECKING:
     from benchmark.datasets.preset import Preset
 
-Kind = Literal["duel", "paper", "untried"]
+Kind = Literal["duel", "paper", "trial", "untried"]
 
 FILE = Path(__file__).parent / "rules.csv"
 COLUMNS = ("id", "specific", "kind", "question", "first", "second", "boards", "rule")
@@ -36,7 +36,7 @@ class Rule:
     """One direction: its question, who meets whom on what, and what decides.
 
     `first`, `second` and `boards` are selectors: ``field=a|b``, or ``field=!a|b`` for all others;
-    of a question on paper `first` names the calculation.
+    of a question on paper `first` names the calculation, of a trial the experiment.
     """
 
     id: str
