@@ -1,0 +1,114 @@
+"""A laser beside the Sun or instead of it: which sensors believe it, which tests notice it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+
+from benchmark.contract import Cell
+from benchmark.metrics.score import is_available
+from benchmark.results.components import current
+from benchmark.results.digests import short_digest
+from benchmark.results.modules import modules_digest
+from benchmark.results.row_file import Row
+from benchmark.results.store import Store
+from benchmark.running.experiment import RecordedExperiment
+from benchmark.spoofing import plots
+from benchmark.spoofing.measure import Counts, SpoofTask, measure
+from benchmark.spoofing.readings import Calibrated
+from benchmark.spoofing.record import RECORD
+
+_CODE = "benchmark.spoofing.measure"
+_CUBE = "pd-maskless-cube"
+_FEW, _WINDOW = Counts(20_000, 100_000, 4_000, 1_000), Counts(2_000, 10_000, 1_000, 300)
+#: Data sets that a laser is shone at.
+SENSORS: Mapping[str, Counts] = {
+    "qpd-single-aperture": _FEW,
+    "cmos-single-aperture": _WINDOW,
+    "cmos-multi-aperture": Counts(300, 500, 500, 50),
+    "cmos-encoded": Counts(400, 1_000, 500, 100),
+    "cmos-l-slit": _WINDOW,
+    "event-single-aperture": _WINDOW,
+    _CUBE: _FEW,
+}
+#: Read by a second extractor, which has an answer to two lights.
+ALSO = (("cmos-single-aperture", "bcm"),)
+
+
+class Spoofing(RecordedExperiment[str]):
+    """Lasers of 0.1 to 10 Suns beside the Sun and alone: who believes them, and who notices."""
+
+    name = "spoofing"
+    title = "Lasers that pass for the Sun"
+    record = RECORD
+
+    @cached_property
+    def pipelines(self) -> Mapping[str, Cell]:
+        """What leads each sensor's standard unit, by its cell's name."""
+        rows = Store(self.directory).rows()
+        found = {}
+        for name, extractor in [*((name, None) for name in SENSORS), *ALSO]:
+            condition = self.parts.preset(name).conditions[0]
+            scored = [
+                (row["rms_all_answers_deg"], row["extractor"], row["model"])
+                for row in rows
+                if (row["dataset"], row["condition"]) == (name, condition)
+                and row["rms_all_answers_deg"] is not None
+                and is_available(row)
+                and extractor in {None, row["extractor"]}
+                and not self.parts.model(row["model"]).about.context
+            ]
+            if scored:
+                _, *best = min(scored)
+                found[f"{name}/{best[0]}"] = Cell(name, condition, *best)
+        return found
+
+    def keys(self) -> Mapping[str, str]:
+        """Digest the code, the counts, and data set, extractor and model of each and the faces."""
+        cells = self.pipelines
+        faces = [cell for cell in cells.values() if cell.dataset == _CUBE]
+        components, code = current(self.parts.only(list(cells.values()))), modules_digest(_CODE)
+
+        def digests(cell: Cell) -> list[str]:
+            return [
+                components.digest(f"{kind}s", getattr(cell, kind))
+                for kind in ("dataset", "extractor", "model")
+            ]
+
+        return {
+            name: short_digest(
+                [
+                    code,
+                    SENSORS[cell.dataset],
+                    *digests(cell),
+                    *(d for one in faces for d in digests(one)),
+                ]
+            )
+            for name, cell in cells.items()
+        }
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        """Draw what is noticed by level, and by the rate of false alarms."""
+        return {"spoofing.svg": lambda: plots.picture(self.rows())}
+
+    def tasks(self, cells: Sequence[str]) -> Iterator[SpoofTask]:
+        """Make a task of each sensor; masked ones have bare faces beside them."""
+        made = {name: self._calibrated(cell) for name, cell in self.pipelines.items()}
+        faces = next((one for one in made.values() if one.preset.name == _CUBE), None)
+        for name in cells:
+            one = made[name]
+            beside = None if one.preset.name == _CUBE else faces
+            yield SpoofTask(one, beside, SENSORS[one.preset.name])
+
+    def _calibrated(self, cell: Cell) -> Calibrated:
+        return Calibrated(
+            self.parts.preset(cell.dataset),
+            self.parts.extractor(cell.extractor),
+            self.parts.model(cell.model),
+        )
+
+    @staticmethod
+    def measure(task: SpoofTask) -> list[tuple[str, Row]]:
+        """Set thresholds on clean readings, then shine the laser."""
+        row = measure(task)
+        return [(f"{row['dataset']}/{row['extractor']}", row)]

@@ -1,0 +1,1 @@
+"""A laser beside the Sun or instead of it: who believes it, and which tests notice."""
