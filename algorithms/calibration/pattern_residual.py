@@ -159,9 +159,9 @@ class PatternResidual:
         answered = np.isfinite(directions).all(axis=1)
         answered &= np.isfinite(values.reshape(len(values), -1)).all(axis=1)
         for n in np.flatnonzero(answered):
-            seen, basis, amplitude = self._predicted(directions[n], origin[n])
+            seen, basis, amplitude, noise = self._predicted(directions[n], origin[n])
             basis *= amplitude
-            spread = _terms(basis) @ self.variance_
+            spread = noise * (_terms(basis) @ self.variance_)
             left, share = _unexplained(values[n].ravel()[seen], basis, spread)
             pattern[n] = (left**2 / spread).sum() / max(len(left) - basis.shape[1], 1)
             brightness[n] = share
@@ -185,11 +185,11 @@ class PatternResidual:
 
     def _predicted(
         self, answer: Floats, origin: Floats, without: int | None = None
-    ) -> tuple[NDArray[np.bool_], Floats, float]:
-        """Return which elements are predicted (K,), columns that explain them, and the amplitude.
+    ) -> tuple[NDArray[np.bool_], Floats, float, float]:
+        """Return which elements are predicted (K,), columns that explain them, amplitude and noise.
 
         The first column is the pattern, the next two its changes with the direction; images have
-        even light, too.
+        even light, too. The noise is the variance of a reading less its prediction, over its own.
         """
         cosine = self.sun_ @ answer
         if without is not None:
@@ -198,9 +198,10 @@ class PatternResidual:
         surface = _surface(self.sun_[near], answer)
         amplitude = float(surface[0] @ self.amplitude_[near])
         amplitude = max(amplitude, 1e-3 * float(self.amplitude_[near].max()))
+        noise = 1.0 + float((surface[0] ** 2).sum())
         if self.focal_px is None:
             basis = (surface[:3] @ self.readings_[near]).T
-            return np.ones(len(basis), dtype=np.bool_), basis, amplitude
+            return np.ones(len(basis), dtype=np.bool_), basis, amplitude, noise
         surfaced = total = weights = np.zeros(self.readings_.shape[1:])
         shares = 1.0 / (1e-6 + 1.0 - cosine[near])
         shares[_IMAGES:] = 0.0
@@ -218,19 +219,19 @@ class PatternResidual:
         rows, columns = np.gradient(pattern)
         seen &= np.isfinite(rows) & np.isfinite(columns)
         parts = (pattern[seen], columns[seen], rows[seen], np.ones(int(seen.sum())))
-        return seen.ravel(), np.column_stack(parts), amplitude
+        return seen.ravel(), np.column_stack(parts), amplitude, noise
 
     def _left_over(self) -> Floats:
         """Coefficients of the variance, of readings predicted from the others."""
         terms, squares = [], []
         every = max(1, self.readings_.size // _SQUARES)
         for n, reading in enumerate(self.readings_):
-            seen, basis, _ = self._predicted(self.sun_[n], self.origin_px_[n], without=n)
+            seen, basis, _, noise = self._predicted(self.sun_[n], self.origin_px_[n], without=n)
             basis *= self.amplitude_[n]
             light = reading.ravel()[seen] * self.amplitude_[n]
             left, _ = _unexplained(light, basis, np.ones(len(basis)))
-            # what the fit took away of the squares is put back
-            lost = len(left) / max(len(left) - basis.shape[1], 1)
+            # what the fit took away of the squares is put back, the prediction's noise taken off
+            lost = len(left) / max(len(left) - basis.shape[1], 1) / noise
             terms.append(_terms(basis)[n % every :: every])
             squares.append(lost * left[n % every :: every] ** 2)
         return _variance(np.concatenate(terms), np.concatenate(squares))

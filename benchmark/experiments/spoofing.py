@@ -20,13 +20,13 @@ from benchmark.spoofing.record import RECORD
 
 _CODE = "benchmark.spoofing.measure"
 _CUBE = "pd-maskless-cube"
-_FEW, _WINDOW = Counts(20_000, 100_000, 4_000, 1_000), Counts(2_000, 10_000, 1_000, 300)
+_FEW, _WINDOW = Counts(20_000, 100_000, 4_000, 1_000), Counts(2_000, 6_000, 1_000, 200)
 #: Data sets that a laser is shone at.
 SENSORS: Mapping[str, Counts] = {
     "qpd-single-aperture": _FEW,
     "cmos-single-aperture": _WINDOW,
-    "cmos-multi-aperture": Counts(300, 500, 500, 50),
-    "cmos-encoded": Counts(400, 1_000, 500, 100),
+    "cmos-multi-aperture": Counts(300, 400, 400, 40),
+    "cmos-encoded": Counts(400, 800, 400, 60),
     "cmos-l-slit": _WINDOW,
     "event-single-aperture": _WINDOW,
     _CUBE: _FEW,

@@ -60,7 +60,7 @@ def _fill(axes: Axes, row: Row) -> None:
         shares = [share for one in levels if (share := _share(one, name)) is not None]
         if len(shares) == len(levels):
             axes.plot(across, shares, color=colour, ls=style, lw=1.8)
-    one = level_of(dict(row), DECIDING)
+    one = level_of(row, DECIDING)
     if one["turned"]:
         seen = [count / one["turned"] for count in one["curve"][:3]]
         axes.plot([DECIDING] * 3, seen, color=FAINT, marker="o", ms=3.5, ls="")

@@ -62,6 +62,6 @@ def cell_of(row: Mapping[str, Any]) -> str:
 RECORD: RowFile[str] = RowFile("spoofing.json", "sensors", 1, cell_of, Spoofed)
 
 
-def level_of(row: Row, suns: float, *, sun: bool = True) -> Row:
+def level_of(row: Mapping[str, Any], suns: float, *, sun: bool = True) -> Row:
     """Return what came of a laser of so many Suns beside the Sun, or alone."""
     return next(one for one in row["levels"] if (one["suns"], one["sun"]) == (suns, sun))
