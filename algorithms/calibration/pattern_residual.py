@@ -16,8 +16,7 @@ from algorithms.contract import Floats, NotFittedError, UnusableDataError
 
 #: Calibration readings around an answer: from which elements are predicted, and images.
 _AROUND, _IMAGES = 12, 6
-#: Rounds of weighing squared residuals by the variance that they are expected to have, and how many
-#: of them at most.
+#: Rounds of weighing squared residuals by their expected variance, and how many of them at most.
 _ROUNDS, _SQUARES = 5, 1_000_000
 #: Least share of the weight of an answer's neighbours that must see a pixel.
 _SEEN = 0.3
@@ -26,13 +25,8 @@ _SEEN = 0.3
 class Residual(NamedTuple):
     """What `PatternResidual.measure` gives, each (N,); NaN where there is no answer.
 
-    Attributes
-    ----------
-    pattern : ndarray
-        Chi-square of the reading against the pattern predicted, over its degrees of freedom:
-        about 1 for one Sun.
-    brightness : ndarray
-        Of the pattern, over that of the calibration's lamp.
+    `pattern` is the chi-square of a reading against the pattern predicted, over its degrees of
+    freedom, about 1 for one Sun; `brightness` that pattern's, over that of the calibration's lamp.
     """
 
     pattern: Floats
@@ -43,11 +37,10 @@ class Residual(NamedTuple):
 class PatternResidual:
     """Residual of readings against those that a calibration had around the answered direction.
 
-    Currents are predicted element by element, by a surface of second order through the
-    calibration's nearest readings. Images move with the Sun: the nearest ones are moved to where
-    the answer puts them and averaged. Brightness, a shift and, of images, even stray light are
-    fitted to the reading; what is left is weighed by the variance that calibration readings have
-    left when each was predicted from the others, as a function of light and its slope.
+    Elements are predicted by a surface of second order through the calibration's nearest readings,
+    images moved to where the answer puts them. Brightness, a shift and, of images, even light are
+    fitted; what is left is weighed by what is left of calibration readings that were predicted from
+    the others, as a function of light and its slope.
 
     Parameters
     ----------
@@ -58,17 +51,15 @@ class PatternResidual:
     --------
     A cube's faces answer by the cosine; of two lights its residual is large.
 
-    >>> steps = np.deg2rad(np.linspace(-30, 30, 13))
-    >>> a, b = (part.ravel() for part in np.meshgrid(steps, steps))
-    >>> sun = np.column_stack([np.tan(b), np.tan(a), np.ones(len(a))])
+    >>> draw = np.random.default_rng(1)
+    >>> sun = np.column_stack([draw.uniform(-0.4, 0.4, (200, 2)), np.ones(200)])
     >>> sun /= np.linalg.norm(sun, axis=1, keepdims=True)
     >>> faces = np.array([[1, 0, 1], [-1, 0, 1], [0, 1, 1], [0, -1, 1]]) / np.sqrt(2)
-    >>> noise = 1e-3 * np.random.default_rng(1).normal(size=(len(sun) + 1, 4))
-    >>> test = PatternResidual().fit(sun @ faces.T + noise[:-1], sun)
-    >>> up = np.array([[0.0, 0.0, 1.0]])
-    >>> clean, spoofed = up @ faces.T + noise[-1], (up + [[0.9, 0, 0.4]]) @ faces.T.clip(0)
-    >>> bool(test.measure(clean, up).pattern[0] < 10 < test.measure(spoofed, up).pattern[0])
-    True
+    >>> test = PatternResidual().fit(sun @ faces.T + 1e-3 * draw.normal(size=(200, 4)), sun)
+    >>> one = sun[:1] @ faces.T
+    >>> two = one + np.maximum([[0.5, 0.0, 0.1]] @ faces.T, 0.0)
+    >>> (test.measure(np.vstack([one, two]), sun[[0, 0]]).pattern > 15.0).tolist()
+    [False, True]
     """
 
     focal_px: float | None = None
@@ -240,8 +231,8 @@ class PatternResidual:
 def tail_threshold(clean: ArrayLike, false_alarms: float, share: float = 0.05) -> float:
     """Return what clean statistics exceed with a probability, extrapolated where it is small.
 
-    Above the quantile that `share` of them exceed, excesses are taken as generalised Pareto
-    distributed, by probability-weighted moments (Hosking and Wallis, Technometrics 29, 1987).
+    Their tail is taken as generalised Pareto, by probability-weighted moments (Hosking and Wallis,
+    Technometrics 29, 1987).
 
     Parameters
     ----------

@@ -21,6 +21,28 @@ class DirectionDuel(Shape):
     outcome: Literal["win", "loss", "tie"] = Field(description="For the first family.")
 
 
+class SpoofedSensor(Shape):
+    """A sensor and pipeline under a laser as bright as the Sun beside it."""
+
+    dataset: str = Field(description="Data set.")
+    extractor: str
+    model: str
+    has_pattern: bool = Field(description="Whether its mask casts a pattern: it decides.")
+    own_error_deg: float = Field(description="RMS error of clean readings, degrees.")
+    readings: int = Field(description="Readings with the laser.")
+    deceived: float = Field(description="Share off by more than ten own errors without a flag.")
+    pull_deg: float | None = Field(description="Median error of these, degrees.")
+    noticed: float | None = Field(description="Share of wrong or no answers that is noticed.")
+    noticed_low: float = Field(description="Lower end of its 95 % interval.")
+    noticed_high: float = Field(description="Upper end.")
+    either: float | None = Field(description="Share that residual or brightness notices.")
+    agreement: float | None = Field(description="Share that a cube of photodiodes beside it does.")
+    knowable: float | None = Field(description="Share that the best test of a known unit notices.")
+    clean: int = Field(description="Clean readings that check the threshold.")
+    false_alarms: int = Field(description="How many of them alarm.")
+    keeps_rate: bool = Field(description="Whether this agrees with one in 10,000 (5 %).")
+
+
 class DirectionRow(Shape):
     """A future direction of the survey with its verdict: a row of the table."""
 
@@ -44,6 +66,8 @@ class Direction(DirectionRow):
     """A direction with what each data set says."""
 
     duels: list[DirectionDuel] = Field(description="Families on data sets; empty otherwise.")
+    sensors: list[SpoofedSensor] = Field(description="Sensors under a laser; empty otherwise.")
+    experiment: str = Field(description="Experiment with plots and more numbers; may be empty.")
 
 
 class Directions(Shape):

@@ -81,8 +81,9 @@ class Measurements:
     def directions(self) -> Sequence[Mapping[str, Any]]:
         """What came of the survey's future directions."""
         from benchmark.directions.outcomes import outcomes  # noqa: PLC0415 - loads the simulator
+        from benchmark.spoofing.record import RECORD  # noqa: PLC0415 - that alone needs it
 
-        return outcomes(self._every_unit)
+        return outcomes(self._every_unit, list(RECORD.read(self._store.directory).values()))
 
     @cached_property
     def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:

@@ -9,26 +9,29 @@ from typing import Any
 
 from benchmark.directions.duels import Duel, duels, verdict
 from benchmark.directions.paper import CALCULATIONS, Calculation
-from benchmark.directions.rules import Rule, rules
+from benchmark.directions.rules import NOT_TRIED, Rule, rules
+from benchmark.directions.trials import laser
 
 Row = Mapping[str, Any]
-NOT_TRIED = "not tried"
 
 
-def outcomes(rows: Iterable[Row]) -> list[dict[str, Any]]:
+def outcomes(rows: Iterable[Row], spoofed: Sequence[Row] = ()) -> list[dict[str, Any]]:
     """Return the outcome of every rule, in order.
 
     Parameters
     ----------
     rows
         Scores of all units (`Store.rows(unit=None)`).
+    spoofed
+        Rows of the experiment with lasers.
     """
     scored = list(rows)
-    return [_outcome(rule, scored) for rule in rules().values()]
+    return [_outcome(rule, scored, spoofed) for rule in rules().values()]
 
 
-def _outcome(rule: Rule, rows: Sequence[Row]) -> dict[str, Any]:
+def _outcome(rule: Rule, rows: Sequence[Row], spoofed: Sequence[Row]) -> dict[str, Any]:
     found: list[Duel] = []
+    sensors: Sequence[Row] = ()
     value: float | None = None
     against: float | None = None
     if rule.kind == "paper":
@@ -40,7 +43,9 @@ def _outcome(rule: Rule, rows: Sequence[Row]) -> dict[str, Any]:
         decided, text, unit = verdict(found), _counted(found), "error, first over second"
         value, against = (median(one.ratio for one in found) if found else None), 1.0
     elif rule.kind == "trial":
-        decided, text, unit = NOT_TRIED, "Not tried yet.", ""
+        tried = laser(spoofed)
+        decided, text, unit = tried.verdict, tried.text, tried.unit
+        value, against, sensors = tried.value, tried.against, tried.sensors
     else:
         decided, text, unit = NOT_TRIED, f"Not tried: {rule.rule}.", ""
     return {
@@ -64,6 +69,8 @@ def _outcome(rule: Rule, rows: Sequence[Row]) -> dict[str, Any]:
             }
             for one in found
         ],
+        "sensors": list(sensors),
+        "experiment": rule.first if sensors else "",
     }
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["duel", "paper", "trial", "untried"]
 
+NOT_TRIED = "not tried"
 FILE = Path(__file__).parent / "rules.csv"
 COLUMNS = ("id", "specific", "kind", "question", "first", "second", "boards", "rule")
 #: What decides where two families of methods meet on data sets.

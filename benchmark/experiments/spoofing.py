@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 
+from benchmark.as_sold.measure import best_pipeline
 from benchmark.contract import Cell
-from benchmark.metrics.score import is_available
 from benchmark.results.components import current
 from benchmark.results.digests import short_digest
 from benchmark.results.modules import modules_digest
@@ -16,7 +16,7 @@ from benchmark.running.experiment import RecordedExperiment
 from benchmark.spoofing import plots
 from benchmark.spoofing.measure import Counts, SpoofTask, measure
 from benchmark.spoofing.readings import Calibrated
-from benchmark.spoofing.record import RECORD
+from benchmark.spoofing.record import RECORD, cell_of
 
 _CODE = "benchmark.spoofing.measure"
 _CUBE = "pd-maskless-cube"
@@ -45,70 +45,53 @@ class Spoofing(RecordedExperiment[str]):
     @cached_property
     def pipelines(self) -> Mapping[str, Cell]:
         """What leads each sensor's standard unit, by its cell's name."""
-        rows = Store(self.directory).rows()
-        found = {}
+        rows, found = Store(self.directory).rows(), {}
         for name, extractor in [*((name, None) for name in SENSORS), *ALSO]:
-            condition = self.parts.preset(name).conditions[0]
-            scored = [
-                (row["rms_all_answers_deg"], row["extractor"], row["model"])
-                for row in rows
-                if (row["dataset"], row["condition"]) == (name, condition)
-                and row["rms_all_answers_deg"] is not None
-                and is_available(row)
-                and extractor in {None, row["extractor"]}
-                and not self.parts.model(row["model"]).about.context
-            ]
-            if scored:
-                _, *best = min(scored)
-                found[f"{name}/{best[0]}"] = Cell(name, condition, *best)
+            first = self.parts.preset(name).conditions[0]
+            of = [row for row in rows if extractor in {None, row["extractor"]}]
+            best = best_pipeline(of, self.parts.models, name, first, table=True)
+            if best is not None:
+                found[f"{name}/{best[0]}"] = Cell(name, first, *best)
         return found
 
     def keys(self) -> Mapping[str, str]:
         """Digest the code, the counts, and data set, extractor and model of each and the faces."""
-        cells = self.pipelines
+        cells, code = self.pipelines, modules_digest(_CODE)
+        components = current(self.parts.only(list(cells.values())))
+        kinds = ("dataset", "extractor", "model")
+
+        def digests(*of: Cell) -> list[str]:
+            return [components.digest(f"{k}s", getattr(one, k)) for one in of for k in kinds]
+
         faces = [cell for cell in cells.values() if cell.dataset == _CUBE]
-        components, code = current(self.parts.only(list(cells.values()))), modules_digest(_CODE)
-
-        def digests(cell: Cell) -> list[str]:
-            return [
-                components.digest(f"{kind}s", getattr(cell, kind))
-                for kind in ("dataset", "extractor", "model")
-            ]
-
         return {
-            name: short_digest(
-                [
-                    code,
-                    SENSORS[cell.dataset],
-                    *digests(cell),
-                    *(d for one in faces for d in digests(one)),
-                ]
-            )
+            name: short_digest([code, SENSORS[cell.dataset], *digests(cell, *faces)])
             for name, cell in cells.items()
         }
 
     def pictures(self) -> Mapping[str, Callable[[], str]]:
         """Draw what is noticed by level, and by the rate of false alarms."""
-        return {"spoofing.svg": lambda: plots.picture(self.rows())}
+        return {
+            "spoofing.svg": lambda: plots.levels(self.rows()),
+            "spoofing-roc.svg": lambda: plots.curves(self.rows()),
+        }
 
     def tasks(self, cells: Sequence[str]) -> Iterator[SpoofTask]:
         """Make a task of each sensor; masked ones have bare faces beside them."""
-        made = {name: self._calibrated(cell) for name, cell in self.pipelines.items()}
+        parts = self.parts
+        made = {
+            name: Calibrated(
+                parts.preset(of.dataset), parts.extractor(of.extractor), parts.model(of.model)
+            )
+            for name, of in self.pipelines.items()
+        }
         faces = next((one for one in made.values() if one.preset.name == _CUBE), None)
-        for name in cells:
-            one = made[name]
+        for one in (made[name] for name in cells):
             beside = None if one.preset.name == _CUBE else faces
             yield SpoofTask(one, beside, SENSORS[one.preset.name])
-
-    def _calibrated(self, cell: Cell) -> Calibrated:
-        return Calibrated(
-            self.parts.preset(cell.dataset),
-            self.parts.extractor(cell.extractor),
-            self.parts.model(cell.model),
-        )
 
     @staticmethod
     def measure(task: SpoofTask) -> list[tuple[str, Row]]:
         """Set thresholds on clean readings, then shine the laser."""
         row = measure(task)
-        return [(f"{row['dataset']}/{row['extractor']}", row)]
+        return [(cell_of(row), row)]

@@ -30,10 +30,7 @@ _KNOWN_DRAWS = 1000
 
 @dataclass(frozen=True)
 class Counts:
-    """Clean readings that set thresholds and that check them; with a laser where it decides, else.
-
-    So many as a quarter of an hour allows: large frames take a tenth of a second each.
-    """
+    """Clean readings that set thresholds and check them; with the deciding laser, with others."""
 
     setting: int
     checking: int
@@ -175,10 +172,9 @@ def _level(
 
 
 def _knowable(task: SpoofTask) -> float | None:
-    """Share of lasers of one Sun that the best test notices of which the unit is known.
+    """Share of lasers of one Sun that the chi-square notices which the best single light leaves.
 
-    The chi-square of what one light that fits best leaves, of any direction and brightness, with
-    as many degrees of freedom as there are elements beyond three.
+    Of a known unit; its degrees of freedom are the elements beyond direction and brightness.
     """
     from scipy.stats import chi2, ncx2  # noqa: PLC0415 - SciPy on demand
 
@@ -198,9 +194,8 @@ def _knowable(task: SpoofTask) -> float | None:
 def _rises(task: SpoofTask, errors_deg: Floats, own: float) -> list[dict[str, Any]]:
     """Share of lasers that a filter's innovation notices while they rise to one Sun.
 
-    The filter knows how the body turns and has settled: it weighs a reading by `GAIN`, so that its
-    innovation has ``1 / (1 - GAIN)`` times the variance of a reading. Its threshold is set on
-    errors of clean readings.
+    It knows how the body turns and has settled, weighs a reading by `GAIN` and so innovates by
+    ``1 / (1 - GAIN)`` times a reading's variance; errors of clean readings set its threshold.
     """
     one, found = task.one, []
     limit = tail_threshold(errors_deg**2, FALSE_ALARMS) / (1.0 - GAIN)

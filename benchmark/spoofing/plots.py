@@ -2,82 +2,87 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from benchmark.panels import BLUE, FAINT, GREEN, VERMILION, panel_figure, rule
+from benchmark.panels import BLUE, FAINT, GREEN, PURPLE, VERMILION, panel_figure, rule
 from benchmark.plot_style import svg
-from benchmark.spoofing.measure import DECIDING, RATES
-from benchmark.spoofing.record import level_of
+from benchmark.spoofing.measure import RATES, SUNS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
 Row = Mapping[str, Any]
+Fill = Callable[["Axes", Row], None]
 
-_ABOUT = "Share of lasers that each sensor's tests notice, by the laser's level"
+#: What is drawn by level, with its colour and line; the levels' colours in curves.
 _LINES = (
     ("deceived", "believed: off by more than ten own errors, no flag", VERMILION, "--"),
     ("pattern", "noticed by the pattern's residual", BLUE, "-"),
     ("agreement", "noticed by a cube of photodiodes beside it", GREEN, "-"),
 )
+_LEVELS = dict(zip(SUNS, (FAINT, GREEN, BLUE, PURPLE, VERMILION), strict=True))
 
 
-def picture(rows: Sequence[Row]) -> str:
-    """Draw the record as SVG, a panel a sensor and pipeline."""
-    return svg(partial(figure, rows), _ABOUT)
+def levels(rows: Sequence[Row]) -> str:
+    """Draw by the laser's level, as SVG, who believes it and what notices."""
+    said = "across: signal of the laser over the Sun's; noticed at one false alarm in 10,000"
+    legend = [(label, colour, style) for _, label, colour, style in _LINES]
+    return _drawn(rows, _by_level, said, legend)
 
 
-def figure(rows: Sequence[Row]) -> Figure:
-    """Draw the same as a figure of Matplotlib."""
-    return panel_figure(
-        list(rows),
-        _fill,
-        size=(3.3, 2.7),
-        columns=4,
-        title="A laser beside the Sun: believed, and noticed",
-        explained="across: signal of the laser over the Sun's; up: share of the readings that it "
-        "turns away; noticed at one false alarm in 10,000. Dots: the residual at 1 Sun and one "
-        f"false alarm in {', '.join(f'{1 / rate:,.0f}' for rate in RATES[:3])}",
-        legend=_legend(),
-    )
+def curves(rows: Sequence[Row]) -> str:
+    """Draw by the rate of false alarms, as SVG, what share the residual notices."""
+    legend = [(f"{suns:g} Suns", colour, "-") for suns, colour in _LEVELS.items()]
+    return _drawn(rows, _by_rate, "across: false alarms a clean reading, residual alone", legend)
 
 
-def _fill(axes: Axes, row: Row) -> None:
-    levels = [one for one in row["levels"] if one["sun"]]
-    across = [one["suns"] for one in levels]
-    axes.set_title(f"{row['dataset']}, {row['extractor']}", size=10, loc="left")
-    axes.set_xscale("log")
-    axes.set_xlim(0.08, 12.5)
-    axes.set_ylim(-0.03, 1.05)
-    rule(axes, [0.0, 0.5, 1.0])
-    axes.set_xticks(across, [f"{suns:g}" for suns in across])
-    axes.minorticks_off()
-    for name, _, colour, style in _LINES:
-        shares = [share for one in levels if (share := _share(one, name)) is not None]
-        if len(shares) == len(levels):
-            axes.plot(across, shares, color=colour, ls=style, lw=1.8)
-    one = level_of(row, DECIDING)
-    if one["turned"]:
-        seen = [count / one["turned"] for count in one["curve"][:3]]
-        axes.plot([DECIDING] * 3, seen, color=FAINT, marker="o", ms=3.5, ls="")
-
-
-def _share(level: Row, name: str) -> float | None:
-    if name == "deceived":
-        return float(level["deceived"] / level["readings"])
-    if name not in level["noticed"]:
-        return None
-    return float(level["noticed"][name] / max(level["turned"], 1))
-
-
-def _legend() -> list[Line2D]:
+def _drawn(
+    rows: Sequence[Row], fill: Fill, said: str, legend: Sequence[tuple[str, str, str]]
+) -> str:
     from matplotlib.lines import Line2D  # noqa: PLC0415 - a second that only pictures need
 
-    return [
-        Line2D([], [], label=label, color=colour, ls=style, lw=1.8)
-        for _, label, colour, style in _LINES
-    ]
+    title = "A laser beside the Sun: shares of readings that believe it and that notice it"
+    figure = partial(
+        panel_figure,
+        rows,
+        fill,
+        size=(3.3, 2.7),
+        columns=4,
+        title=title,
+        explained=said,
+        legend=[Line2D([], [], label=of, color=c, ls=ls, lw=1.8) for of, c, ls in legend],
+    )
+    return svg(figure, title)
+
+
+def _axes(axes: Axes, row: Row, places: Sequence[float]) -> list[Row]:
+    """Style a panel, and return what came of lasers beside the Sun."""
+    axes.set_title(f"{row['dataset']}, {row['extractor']}", size=10, loc="left")
+    axes.set_xscale("log")
+    axes.set_xlim(0.8 * min(places), 1.25 * max(places))
+    axes.set_ylim(-0.03, 1.05)
+    axes.set_xticks(places, [f"{place:g}" for place in places])
+    rule(axes, [0.0, 0.5, 1.0])
+    return [one for one in row["levels"] if one["sun"]]
+
+
+def _by_level(axes: Axes, row: Row) -> None:
+    found = _axes(axes, row, SUNS)
+    for name, _, colour, style in _LINES:
+        places = []
+        for one in found:
+            of = one["readings"] if name == "deceived" else one["turned"]
+            count = one["deceived"] if name == "deceived" else one["noticed"].get(name)
+            if of and count is not None:
+                places.append((one["suns"], count / of))
+        if places:
+            axes.plot(*zip(*places, strict=True), color=colour, ls=style, lw=1.8)
+
+
+def _by_rate(axes: Axes, row: Row) -> None:
+    for one in _axes(axes, row, RATES):
+        if one["turned"]:
+            shares = [count / one["turned"] for count in one["curve"]]
+            axes.plot(RATES, shares, color=_LEVELS[one["suns"]], lw=1.8)

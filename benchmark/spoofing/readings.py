@@ -142,10 +142,7 @@ class Calibrated:
         return mean, self.sensor.variance(mean)
 
     def fit_one_light(self, scene: Scene, start: Floats, mean: Floats, variance: Floats) -> Floats:
-        """(N,) chi-square that the best direction and brightness of one light leave of means.
-
-        By damped Gauss-Newton steps from directions (N, 3), the unit and stray light known.
-        """
+        """(N,) chi-square that the best light leaves of means; damped steps from (N, 3)."""
         sun, bright = start.copy(), np.ones(len(start))
         weight, damping = 1.0 / np.sqrt(variance), np.full(len(start), 1e-3)
 

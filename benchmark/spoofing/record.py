@@ -5,53 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import BaseModel, NonNegativeFloat, NonNegativeInt
+from pydantic import ConfigDict, NonNegativeFloat, NonNegativeInt, create_model
 
 from benchmark.results.row_file import Row, RowFile
 
-
-class Level(BaseModel, extra="forbid"):
-    """Readings under a laser of one level: how many are what."""
-
-    sun: bool
-    suns: NonNegativeFloat
-    readings: NonNegativeInt
-    answered: NonNegativeInt
-    flagged: NonNegativeInt
-    deceived: NonNegativeInt
-    pull_deg: NonNegativeFloat | None
-    turned: NonNegativeInt
-    noticed: dict[str, NonNegativeInt]
-    curve: list[NonNegativeInt]
-
-
-class Rise(BaseModel, extra="forbid"):
-    """Lasers that rise over so many readings, and how many a filter's innovation notices."""
-
-    readings: NonNegativeInt
-    draws: NonNegativeInt
-    noticed: NonNegativeInt
-    off_deg: NonNegativeFloat | None
-    over_own: NonNegativeFloat | None
-
-
-class Spoofed(BaseModel, extra="forbid"):
-    """A sensor read by one pipeline."""
-
-    dataset: str
-    extractor: str
-    model: str
-    key: str
-    has_pattern: bool
-    own_error_deg: NonNegativeFloat
-    setting: NonNegativeInt
-    checking: NonNegativeInt
-    answered: NonNegativeInt
-    flagged: NonNegativeInt
-    alarms: dict[str, NonNegativeInt]
-    knowable: NonNegativeFloat | None
-    levels: list[Level]
-    rises: list[Rise]
+#: Counts are of readings, as `benchmark.spoofing.measure` has them.
+_FIELDS: dict[str, Any] = {
+    **dict.fromkeys(("dataset", "extractor", "model", "key"), str),
+    "has_pattern": bool,
+    **dict.fromkeys(("setting", "checking", "answered", "flagged"), NonNegativeInt),
+    "own_error_deg": NonNegativeFloat,
+    "knowable": NonNegativeFloat | None,
+    "alarms": dict[str, NonNegativeInt],
+    **dict.fromkeys(("levels", "rises"), list[dict[str, Any]]),
+}
+_ROW = create_model("Spoofed", __config__=ConfigDict(extra="forbid"), **_FIELDS)
 
 
 def cell_of(row: Mapping[str, Any]) -> str:
@@ -59,7 +27,7 @@ def cell_of(row: Mapping[str, Any]) -> str:
     return f"{row['dataset']}/{row['extractor']}"
 
 
-RECORD: RowFile[str] = RowFile("spoofing.json", "sensors", 1, cell_of, Spoofed)
+RECORD: RowFile[str] = RowFile("spoofing.json", "sensors", 1, cell_of, _ROW)
 
 
 def level_of(row: Mapping[str, Any], suns: float, *, sun: bool = True) -> Row:

@@ -25,11 +25,7 @@ _POINT = SolarDisc(diameter_deg=0.0)
 def lit_by_laser(sensor: Any) -> Any:
     """Return the sensor as a distant point of one wavelength lights it.
 
-    Parameters
-    ----------
-    sensor
-        Bare faces, elements behind a mask, pixels or events: of those whose light is rendered by
-        itself (`lit`) and added to as `Scene.albedo`.
+    Of sensors whose light is rendered by itself (`lit`) and added to as `Scene.albedo`.
     """
     if isinstance(sensor, Faces):
         return replace(sensor, sun=_POINT)  # type: ignore[type-var]
@@ -42,24 +38,10 @@ def lit_by_laser(sensor: Any) -> Any:
 def with_laser(
     sensor: Any, scene: Scene, pattern: FixedPattern, laser: Floats, suns: float
 ) -> Scene:
-    """Return a scene in which a laser shines from (N, 3), too.
+    """Return a scene in which a laser shines from (N, 3), too; ValueError with the Earth in it.
 
-    Parameters
-    ----------
-    sensor
-        That sees both.
-    scene
-        Without any light of the Earth.
-    pattern
-        The unit.
-    laser, suns
-        Directions, and the signal at normal incidence over that of the mean Sun: for irradiance,
-        divide by the detector's response at the laser's wavelength over that to sunlight.
-
-    Raises
-    ------
-    ValueError
-        Where the scene has light of the Earth already.
+    `suns` is its signal at normal incidence over that of the mean Sun: for irradiance, divide by
+    the detector's response at the laser's wavelength over that to sunlight.
     """
     if scene.albedo is not None:
         raise ValueError("a laser takes the place of the Earth's light; the scene has some")

@@ -8,7 +8,7 @@ import typer
 
 from api.cli.asking import ask
 from api.cli.table_output import Format, FormatOption, emit, emit_answer, say
-from api.schema.directions import DirectionDuel
+from api.schema.directions import DirectionDuel, SpoofedSensor
 from api.schema.table import columns_of
 from api.service.directions import directions as service
 from survey_data.nearest import nearest_name
@@ -37,7 +37,10 @@ def directions(
         near = nearest_name(direction.upper(), tuple(found))
         hint = f"; did you mean {near}?" if near else f"; known: {', '.join(found)}"
         raise typer.BadParameter(f"no direction {direction!r}{hint}")
-    emit(one["duels"], columns_of(DirectionDuel), form, document=one, title=one["question"])
+    rows, columns = one["duels"], columns_of(DirectionDuel)
+    if one["sensors"]:
+        rows, columns = one["sensors"], columns_of(SpoofedSensor)
+    emit(rows, columns, form, document=one, title=one["question"])
     if form is Format.TABLE:
         for text in (one["text"], f"Verdict: {one['verdict']}.", one["rule"]):
             say(text)
