@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from scipy.special import bdtr, betaincinv
 
 from benchmark.directions.rules import NOT_TRIED
+from benchmark.experiments.spoofing import SENSORS
 from benchmark.spoofing.record import level_of
 
 Row = Mapping[str, Any]
@@ -68,6 +69,8 @@ def laser(rows: Sequence[Row]) -> Trial:
             f" A filter's innovation notices {quick:.0f} % of lasers that come at once and "
             f"{slow:.0f} % of those that rise over {rises[-1]['readings']:g} readings."
         )
+    if missing := sorted(SENSORS.keys() - {row["dataset"] for row in rows}):
+        text += f" Not measured yet: {', '.join(missing)}."
     return Trial(verdict, text, worst["noticed"], NOTICED, "share noticed, worst sensor", sensors)
 
 
