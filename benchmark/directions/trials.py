@@ -69,6 +69,8 @@ def laser(rows: Sequence[Row]) -> Trial:
             f" A filter's innovation notices {quick:.0f} % of lasers that come at once and "
             f"{slow:.0f} % of those that rise over {rises[-1]['readings']:g} readings."
         )
+    if loud := [one["dataset"] for one in deciding if not one["keeps_rate"]]:
+        text += f" More false alarms than that, which does not count: {', '.join(loud)}."
     if missing := sorted(SENSORS.keys() - {row["dataset"] for row in rows}):
         text += f" Not measured yet: {', '.join(missing)}."
     return Trial(verdict, text, worst["noticed"], NOTICED, "share noticed, worst sensor", sensors)

@@ -77,6 +77,7 @@ def test_the_worst_sensor_is_named_with_what_physics_allows_there() -> None:
     assert found.value == pytest.approx(0.95)
     assert "qpd-single-aperture, 95.0 %" in found.text
     assert "would notice 96.0 %" in found.text
+    assert "does not count: any" in laser([row(400, alarms=20)]).text
 
 
 def test_every_sensor_is_in_the_record_or_named_as_missing() -> None:
