@@ -63,11 +63,12 @@ def laser(rows: Sequence[Row]) -> Trial:
             " Without the Sun the laser passes for it: only the Sun's disc and colours tell, and "
             f"the residual notices {min(seen):.0f} to {max(seen):.0f} % of the answers."
         )
-    for rises in (row["rises"] for row in rows if row["has_pattern"] and row["rises"]):
+    for row in (row for row in rows if row["has_pattern"] and row["rises"]):
+        rises = row["rises"]
         quick, slow = (100 * rises[k]["noticed"] / rises[k]["draws"] for k in (0, -1))
         text += (
-            f" A filter's innovation notices {quick:.0f} % of lasers that come at once and "
-            f"{slow:.0f} % of those that rise over {rises[-1]['readings']:g} readings."
+            f" On {row['dataset']} a filter's innovation notices {quick:.0f} % at once and "
+            f"{slow:.0f} % of lasers that rise over {rises[-1]['readings']:g} readings."
         )
     if loud := [one["dataset"] for one in deciding if not one["keeps_rate"]]:
         text += f" More false alarms than that, which does not count: {', '.join(loud)}."

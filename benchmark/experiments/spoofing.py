@@ -28,7 +28,7 @@ SENSORS: Mapping[str, Counts] = {
     "cmos-multi-aperture": Counts(300, 400, 400, 40),
     "cmos-encoded": Counts(400, 800, 400, 60),
     "cmos-l-slit": Counts(400, 1_000, 400, 60),
-    "event-single-aperture": Counts(400, 1_000, 400, 60),
+    "event-single-aperture": Counts(2_000, 6_000, 400, 60),
     _CUBE: Counts(5_000, 20_000, 1_000, 300),
 }
 #: Read by a second extractor, which has an answer to two lights.
