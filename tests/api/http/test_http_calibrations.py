@@ -25,6 +25,14 @@ BAD = b"x_px,y_px,alpha,beta\n1,b,3,4\n"
 ADDRESS = "/v1/calibrations"
 
 
+@pytest.fixture(scope="module", autouse=True)
+def patience():
+    """Give all the time they need to processes that take the processor when nobody else does."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(uploaded, "_PATIENCE", 60.0)
+        yield
+
+
 def turntable() -> bytes:
     """A small camera behind a pinhole."""
     line = np.linspace(-40, 40, 9)
