@@ -13,6 +13,12 @@ from api.schema.table import columns_of
 from api.service.directions import directions as service
 from survey_data.nearest import nearest_name
 
+#: Of a sensor with a laser beside it, what a table has room for; CSV and JSON have everything.
+_OF_SENSORS = (
+    "dataset", "extractor", "readings", "deceived", "noticed", "noticed_low", "clean",
+    "false_alarms",
+)  # fmt: skip
+
 
 def directions(
     direction: Annotated[
@@ -40,6 +46,8 @@ def directions(
     rows, columns = one["duels"], columns_of(DirectionDuel)
     if one["sensors"]:
         rows, columns = one["sensors"], columns_of(SpoofedSensor)
+        if form is Format.TABLE:
+            columns = _OF_SENSORS
     emit(rows, columns, form, document=one, title=one["question"])
     if form is Format.TABLE:
         for text in (one["text"], f"Verdict: {one['verdict']}.", one["rule"]):
