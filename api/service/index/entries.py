@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 from urllib.parse import quote
 
 import survey_data
@@ -12,20 +12,47 @@ from api.service.index.index import Entry
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
 from survey_data import labels
 
-if TYPE_CHECKING:  # which imports this module
-    from api.service.knowledge import Knowledge
+if TYPE_CHECKING:
+    from api.service.measurements import Measurements
+    from registry.catalogue import Catalogue
+    from registry.studies import Facts
+    from registry.taxonomy import Taxonomy
+    from survey_data.editions import Choice
 
 KINDS = ("study", "algorithm", "dataset", "claim", "attribute", "word")
 """In the order that breaks ties."""
 
 
-def entries(known: Knowledge) -> tuple[Entry, ...]:
+class EntrySources(Protocol):
+    """What entries are made from: `api.service.knowledge.Knowledge`, which imports this module."""
+
+    @property
+    def facts(self) -> Facts:
+        """Studies and taxonomy."""
+
+    def of(self, edition: Choice) -> EntrySources:
+        """Return the same with the studies of an edition."""
+
+    @property
+    def taxonomy(self) -> Taxonomy:
+        """The vocabulary."""
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The implementations."""
+
+    @property
+    def measurements(self) -> Measurements:
+        """What is measured."""
+
+
+def entries(known: EntrySources) -> tuple[Entry, ...]:
     """Return all entries of the search, by kind, in the order of their lists."""
     found = (_studies, _algorithms, _datasets, _claims, _attributes, _words)
     return tuple(entry for of_kind in found for entry in of_kind(known))
 
 
-def _studies(known: Knowledge) -> Iterator[Entry]:
+def _studies(known: EntrySources) -> Iterator[Entry]:
     for study in known.of("all").facts.studies.values():
         values = [
             _name_of(value, known.taxonomy.name(attribute, value))
@@ -42,7 +69,7 @@ def _studies(known: Knowledge) -> Iterator[Entry]:
         )
 
 
-def _algorithms(known: Knowledge) -> Iterator[Entry]:
+def _algorithms(known: EntrySources) -> Iterator[Entry]:
     for one in known.catalogue.implementations():
         attribute = "extractor" if one.role == "extractor" else "model"
         values = {entry.value: entry.name for entry in known.taxonomy.entries(attribute)}
@@ -56,7 +83,7 @@ def _algorithms(known: Knowledge) -> Iterator[Entry]:
         )
 
 
-def _datasets(known: Knowledge) -> Iterator[Entry]:
+def _datasets(known: EntrySources) -> Iterator[Entry]:
     for card in known.measurements.cards:
         detector, mask = str(card["detector"]), str(card["mask"])
         name = known.taxonomy.name
@@ -70,7 +97,7 @@ def _datasets(known: Knowledge) -> Iterator[Entry]:
         )
 
 
-def _claims(known: Knowledge) -> Iterator[Entry]:
+def _claims(known: EntrySources) -> Iterator[Entry]:
     for entry in known.measurements.claims.values():
         said = entry.claim
         yield Entry(
@@ -83,14 +110,14 @@ def _claims(known: Knowledge) -> Iterator[Entry]:
         )
 
 
-def _attributes(_known: Knowledge) -> Iterator[Entry]:
+def _attributes(_known: EntrySources) -> Iterator[Entry]:
     table = survey_data.load().attribute_definitions
     columns = (table[name] for name in ("attribute", "name", "synonyms", "description"))
     for attribute, name, synonyms, description in zip(*columns, strict=True):
         yield Entry("attribute", attribute, name, synonyms, description, "/v1/taxonomy")
 
 
-def _words(known: Knowledge) -> Iterator[Entry]:
+def _words(known: EntrySources) -> Iterator[Entry]:
     meanings = {(one.kind, one.term): one.meaning for one in glossary()}
     for attribute in known.taxonomy.attributes:
         for entry in known.taxonomy.entries(attribute):

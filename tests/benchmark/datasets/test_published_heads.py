@@ -10,9 +10,9 @@ from benchmark.running import pinning
 #: Of which four samples of a split take seconds: tables of holes, light from the Earth, megapixels.
 SECONDS = {
     "ccd-multi-aperture", "ccd-multi-slit-orbit", "ccd-orbit", "ccd-single-aperture",
-    "cmos-compound-eye", "cmos-encoded-sizes", "cmos-l-slit", "cmos-multi-aperture",
+    "cmos-compound-eye", "cmos-encoded", "cmos-encoded-sizes", "cmos-l-slit", "cmos-multi-aperture",
     "cmos-multi-aperture-glass", "cmos-single-aperture", "cmos-single-aperture-thick",
-    "cmos-slit", "event-single-aperture", "pva-orbit", "qpd-orbit",
+    "cmos-slit", "event-l-slit", "event-single-aperture", "pd-orbit", "pva-orbit", "qpd-orbit",
 }  # fmt: skip
 #: Of which all conditions take seconds: light from the Earth, motion, diffraction.
 LONG = SECONDS | {

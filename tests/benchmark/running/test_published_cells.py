@@ -14,11 +14,10 @@ from benchmark.running import runner
 QUICK = (
     "pd-slit", "oi-maskless-pyramid", "pd-maskless-pyramid", "ltf-maskless-cube",
     "pd-single-aperture", "pd-code-dial", "ccd-slit", "ccd-v-slit", "ccd-vernier", "ccd-n-slit",
-    "ccd-periodic", "ccd-multi-slit", "cmos-lens", "cmos-single-aperture-pinhole",
-    "cmos-encoded-oblique", "ccd-lens", "cmos-single-aperture-thick", "event-l-slit",
-    "pd-albedo-orbit",
+    "ccd-periodic", "ccd-multi-slit", "cmos-lens", "cmos-encoded-oblique", "pd-albedo-orbit",
 )  # fmt: skip
 LONG = (
+    "cmos-single-aperture-pinhole", "ccd-lens", "cmos-single-aperture-thick", "event-l-slit",
     "pva-orbit", "pd-orbit", "qpd-orbit", "ccd-multi-slit-orbit", "cmos-l-slit",
     "ccd-multi-aperture",
 )  # fmt: skip
