@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Row = Mapping[str, Any]
 Fill = Callable[["Axes", Row], None]
 
-#: What is drawn by level, with its colour and line; the levels' colours in curves.
+#: Shares drawn against the laser's level: column, label, colour, line.
 _LINES = (
     ("deceived", "believed: off by more than ten own errors, no flag", VERMILION, "--"),
     ("pattern", "noticed by the pattern's residual", BLUE, "-"),
