@@ -177,8 +177,11 @@ def _frame(directory: Path, name: str, place: str) -> tuple[NDArray[np.generic],
 
     try:
         path = (directory / name).resolve()
-    except (OSError, RuntimeError, ValueError):  # links in a circle, null characters
-        raise TableError(f"{place}: expected a picture; got no file {name[:60]!r}") from None
+        nowhere = path.is_symlink()  # links in a circle, which Python 3.13 gives back
+    except (OSError, RuntimeError, ValueError):  # and 3.11 refuses; null characters
+        nowhere = True
+    if nowhere:
+        raise TableError(f"{place}: expected a picture; got no file {name[:60]!r}")
     if not name.strip() or not path.is_relative_to(directory.resolve()):
         raise TableError(f"{place}: expected a picture in {directory.name}; got {name[:60]!r}")
     try:
