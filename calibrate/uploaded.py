@@ -80,6 +80,11 @@ class Caller:
         """The end that the process reads."""
         return self._read.fileno()
 
+    @property
+    def is_gone(self) -> bool:
+        """Whether the caller has hung up."""
+        return self._write.closed
+
     def hang_up(self) -> None:
         """Wait no longer: the process ends, or will as soon as it begins."""
         self._write.close()
@@ -154,6 +159,8 @@ def _answered(
             (directory / name).parent.mkdir()
             (directory / name).write_bytes(one.data)
         (directory / _TASK).write_text(json.dumps({**task, "names": names}), "utf-8")
+        if caller.is_gone:  # else a busy machine would load the program to no end
+            raise UploadRefusedError("the caller hung up before the calibration began")
         try:
             done = subprocess.run(  # noqa: S603 - this interpreter, and a directory made here
                 [sys.executable, "-c", _BEGIN, str(directory)],
