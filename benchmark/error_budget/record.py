@@ -17,7 +17,8 @@ _FIELDS: dict[str, Any] = {
     **dict.fromkeys(("answered", "judged"), NonNegativeInt),
     **dict.fromkeys(_ANGLES, NonNegativeFloat | None),
 }
-_ROW = create_model("ErrorBudget", __config__=ConfigDict(extra="forbid"), **_FIELDS)
+_REQUIRED: dict[str, Any] = {name: (kind, ...) for name, kind in _FIELDS.items()}
+_ROW = create_model("ErrorBudget", __config__=ConfigDict(extra="forbid"), **_REQUIRED)
 
 
 def _dataset(row: Row) -> str:

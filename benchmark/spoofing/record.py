@@ -19,7 +19,8 @@ _FIELDS: dict[str, Any] = {
     "alarms": dict[str, NonNegativeInt],
     **dict.fromkeys(("levels", "rises"), list[dict[str, Any]]),
 }
-_ROW = create_model("Spoofed", __config__=ConfigDict(extra="forbid"), **_FIELDS)
+_REQUIRED: dict[str, Any] = {name: (kind, ...) for name, kind in _FIELDS.items()}
+_ROW = create_model("Spoofed", __config__=ConfigDict(extra="forbid"), **_REQUIRED)
 
 
 def cell_of(row: Mapping[str, Any]) -> str:
