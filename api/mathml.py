@@ -21,7 +21,10 @@ _GREEK = range(0x370, 0x400)
 def mathml(tex: str, *, block: bool = False) -> str:
     """Write an equation as MathML; its variables, of one letter, have the class ``variable``.
 
-    `block`: whether it stands on lines of its own.
+    Parameters
+    ----------
+    tex : LaTeX
+    block : whether it stands on lines of its own
     """
     for unknown, known in _UNKNOWN_TEX.items():
         tex = re.sub(re.escape(unknown) + r"(?![a-zA-Z])", known.replace("\\", r"\\"), tex)

@@ -36,9 +36,13 @@ class ContractResult:
 def name_of(given: str) -> str:
     """Return the name of an algorithm that is given by its name or its file.
 
-    WrongCallError where a module of `algorithms` cannot be imported or breaks the contract, and for
-    a file that holds no algorithm or several. UnknownNameError for a name that discovery does not
-    find, naming the nearest.
+    Raises
+    ------
+    WrongCallError
+        Where a module of `algorithms` cannot be imported or breaks the contract, and for a file
+        that holds no algorithm or several.
+    UnknownNameError
+        For a name that discovery does not find, naming the nearest.
     """
     try:
         found = {**discover_extractors(), **discover_compensations(), **discover_models()}
@@ -65,7 +69,10 @@ def name_of(given: str) -> str:
 def check_contract(name: str) -> ContractResult | None:
     """Run the common suite on one algorithm; None where this is no checkout with its tests.
 
-    WrongCallError where the test runner is not installed or found nothing to run.
+    Raises
+    ------
+    WrongCallError
+        Where the test runner is not installed or found nothing to run.
     """
     suite = ROOT / "tests" / "algorithms"
     if not suite.is_dir():

@@ -84,9 +84,13 @@ def every_store(directory: Path | None) -> tuple[Store, Store, Store]:
 class ScoredCells:
     """Rows of cells and where they came from.
 
-    `rows`: score rows in the order of the cells, with latency_us and time_ratio as published.
-    `published_count`, `stored_count`, `measured_count`: numbers of scores read from the published
-    results, read from the working store, and measured now.
+    Attributes
+    ----------
+    rows : score rows in the order of the cells, with latency_us and time_ratio as published
+    published_count, stored_count, measured_count : numbers of scores read from the published
+        results, read from the working store, and measured now
+    directory : the working store
+    warnings : of the runner
     """
 
     rows: list[Row]
@@ -111,8 +115,14 @@ def score_cells(
 ) -> ScoredCells:
     """Read what is known of the cells and measure the rest.
 
-    typer.Exit with 130 on Ctrl-C, after saying what is kept. StoreLockedError, StoreError,
-    DaskMissingError, ClusterError, WorkerLostError as `benchmark.running.runner.run`.
+    Raises
+    ------
+    StoreError
+        Where published results or the working store cannot be read.
+    UnknownNameError, StoreLockedError, ImportError, ClusterError, OtherCodeError, WorkerLostError
+        As `benchmark.running.runner.run`.
+    RunInterruptedError
+        On Ctrl-C; what was measured is kept.
     """
     from benchmark.plan.parts import every_part  # noqa: PLC0415 - slow
     from benchmark.running.runner import run, stale  # noqa: PLC0415 - slow

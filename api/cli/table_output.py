@@ -58,6 +58,7 @@ def emit(
         is come first
     form : how; a table leaves out columns that are empty in every row
     document : what JSON prints in place of the list of rows
+    title : above the table
     """
     if form is Format.JSON:
         emit_json(list(rows) if document is None else document)
@@ -104,6 +105,8 @@ def table(
     rows, columns : as `emit`
     width, indent : of every line
     right : columns whose text is a number, which is never divided
+    rule : below the heading
+    bold : the heading
     """
     room = width - len(indent)
     headings = [name.replace("_", " ") for name in columns]

@@ -46,13 +46,18 @@ def differences(
 ) -> list[Problem]:
     """Say in what a bundle that is whole (`verification.verify`) is not the one built here.
 
-    As `bundle.build` of what it is held against.
-
     Parameters
     ----------
+    bundle : its directory
+    survey, published : tables and results that it is held against
     frames : data sets whose samples it should have; all by default
     anew : make the samples again, which takes minutes; see `export_verification.verify`
     progress : called as ``progress(done, total, what)`` in data sets
+
+    Raises
+    ------
+    CodeArchiveError, FileNotFoundError, ValueError
+        As `bundle.build` of what it is held against.
     """
     who = identity()
     said = read_descriptor(bundle / DESCRIPTOR).get("version")

@@ -52,7 +52,10 @@ class DepositError(ValueError):
 class Bundle:
     """What was built.
 
-    `directory`, `archive`: the bundle, and its zip. `files`: paths in the bundle, sorted.
+    Attributes
+    ----------
+    directory, archive : the bundle, and its zip
+    files : paths in the bundle, sorted
     """
 
     directory: Path
@@ -84,11 +87,6 @@ def build(
 ) -> Bundle:
     """Build the bundle at `out` and its zip at `out`.zip, both or neither.
 
-    DepositError where `out` holds anything but an earlier bundle, or the survey's tables have
-    problems. CodeArchiveError where there is no code to put in. FileNotFoundError where there are
-    no published results, or a licence is missing. ValueError where a table cannot be read or has a
-    column nothing is known of.
-
     Parameters
     ----------
     out : the directory to make; one that holds an earlier bundle is replaced
@@ -97,6 +95,19 @@ def build(
     frames : data sets of which samples go along; all by default
     code : source distribution that goes along; made of this checkout by default
     progress : called as ``progress(done, total, what)`` in data sets, then tables and zip
+
+    Raises
+    ------
+    DepositError
+        Where `out` holds anything but an earlier bundle, or the survey's tables have problems.
+    CodeArchiveError
+        Where there is no code to put in.
+    FileNotFoundError
+        Where there are no published results, or a licence or CITATION.cff is missing.
+    UnreplaceableError
+        Where `out` is the root of a file system.
+    ValueError
+        Where a table cannot be read or has a column nothing is known of.
     """
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
     require_replaceable(out)
@@ -138,8 +149,13 @@ def fill(
 ) -> None:
     """Write all of a bundle beside the samples and the code that lie in it.
 
-    `exported`: of each file of samples what `frames.write_frames` says. `other_forms`: writes the
-    tables in other forms than CSV.
+    Parameters
+    ----------
+    bundle : its directory
+    who : name, version and terms
+    sources : what it is made of
+    exported : of each file of samples what `frames.write_frames` says
+    other_forms : writes the tables in other forms than CSV
     """
     described = read_descriptor(sources.survey / DESCRIPTOR)
     for resource in described["resources"]:

@@ -27,9 +27,15 @@ class CodeArchiveError(ValueError):
 def write_code(bundle: Path, archive: Path | None = None) -> None:
     """Write the archive of the code to code/, and the script beside the README.
 
-    `archive`: source distribution to take; made of this checkout by default.
+    Parameters
+    ----------
+    bundle : its directory
+    archive : source distribution to take; made of this checkout by default
 
-    CodeArchiveError where the archive is none, this is no checkout or the build backend fails.
+    Raises
+    ------
+    CodeArchiveError
+        Where the archive is none, this is no checkout or the build backend fails.
     """
     folder = bundle / FOLDER
     folder.mkdir()

@@ -65,8 +65,13 @@ def crate(
 ) -> dict[str, Any]:
     """Describe the bundle.
 
-    `files`: size in bytes and SHA-256 by path, every file but this one and the list of checksums.
-    `descriptions`: (name, description) by path, where there is one.
+    Parameters
+    ----------
+    identity : of the project
+    files : size in bytes and SHA-256 by path, every file but this one and the list
+        of checksums
+    descriptions : (name, description) by path, where there is one
+    keywords : of the bundle
     """
     authors = [_author(author, n) for n, author in enumerate(identity.authors, start=1)]
     affiliations = {

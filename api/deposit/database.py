@@ -35,8 +35,14 @@ Described = tuple[Mapping[str, Any], pa.Table]
 def write_database(tables: Sequence[Described], path: Path) -> None:
     """Write all tables into a new SQLite file; the same bytes each time, by one SQLite.
 
-    ValueError for a name that would need quotes. sqlite3.IntegrityError where a key is not unique,
-    or refers to nothing. OSError where the file cannot be written.
+    Raises
+    ------
+    ValueError
+        For a name that would need quotes.
+    sqlite3.IntegrityError
+        Where a key is not unique, or refers to nothing.
+    OSError
+        Where the file cannot be written.
     """
     try:
         with closing(sqlite3.connect(path)) as base:

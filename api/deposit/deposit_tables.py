@@ -83,8 +83,12 @@ class MeasuredTable:
 def measured_tables(published: Path) -> list[MeasuredTable]:
     """Make the measured tables from a directory of published results.
 
-    NothingPublishedError where it holds no scores. ValueError where a file cannot be read, or has a
-    column nothing is known of.
+    Raises
+    ------
+    NothingPublishedError
+        Where it holds no scores.
+    ValueError
+        Where a file cannot be read, or has a column nothing is known of.
     """
     store, beside = Store(published), Store(published.with_name(PUBLISHED_STUDIES.name))
     compared = store.rows(unit=None)

@@ -26,9 +26,12 @@ def resolution(
 
     Of both editions, each study's own beside it.
 
-    `rows`: published scores of all units, which grades take errors from; without them no score is
-    asked for. `own`: what can be scored on sensors of single studies, by study; that of those
-    simulated by default.
+    Parameters
+    ----------
+    rows : published scores of all units, which grades take errors from; without them no score is
+        asked for
+    own : what can be scored on sensors of single studies, by study; that of those simulated by
+        default
     """
     owned = study_plans() if own is None else own
     plan, shown, known, every = scorable_plan(), data_sets(), facts(), facts("all")

@@ -36,7 +36,10 @@ class CellError(ValueError):
 def typed_table(bundle: Path, resource: Mapping[str, Any]) -> pa.Table:
     """Read a table of a bundle with types and meanings of its columns, null where a cell is empty.
 
-    CellError where columns are others than the descriptor's, or a cell is not of its column's type.
+    Raises
+    ------
+    CellError
+        Where columns are others than the descriptor's, or a cell is not of its column's type.
     """
     path = bundle / resource["path"]
     fields = [
@@ -72,8 +75,10 @@ def typed_table(bundle: Path, resource: Mapping[str, Any]) -> pa.Table:
 def write_other_forms(bundle: Path, descriptor: Mapping[str, Any], out: Path | None = None) -> None:
     """Write the tables of a bundle as Parquet and SQLite, too; into `out`, the bundle by default.
 
-    CellError, ValueError, sqlite3.Error where the tables are not what the descriptor says, or their
-    keys do not hold.
+    Raises
+    ------
+    CellError, ValueError, sqlite3.Error
+        Where the tables are not what the descriptor says, or their keys do not hold.
     """
     resources = [one for one in descriptor["resources"] if one.get("type") == "table"]
     tables = [(resource, typed_table(bundle, resource)) for resource in resources]

@@ -28,8 +28,12 @@ def write_frames(
 ) -> list[dict[str, Any]]:
     """Export samples of the data sets to frames/<name>/; return a row for each file of arrays.
 
-    `pins`: hashes of the published data, stated in the cards. `progress`: called as
-    ``progress(done, total, what)`` in data sets.
+    Parameters
+    ----------
+    bundle : directory of the bundle
+    names : of the data sets
+    pins : hashes of the published data, stated in the cards
+    progress : called as ``progress(done, total, what)`` in data sets
     """
     rows: list[dict[str, Any]] = []
     for done, name in enumerate(names):

@@ -49,6 +49,9 @@ def package(
     Parameters
     ----------
     directory : the bundle, its tables already written to survey/ and benchmark/
+    identity : of the project
+    survey : the survey's own descriptor, paths relative to its directory
+    measured : the measured tables
     exported : of each file of samples dataset, condition, split, file, samples
     errors : of each file of errors name, title, description, path
     code : path of the archive of the code
@@ -101,7 +104,12 @@ def package(
 def pack(bundle: Path, target: Path, top: str, released: date) -> None:
     """Pack a bundle as a zip, the same bytes each time with one zlib.
 
-    `top`: the one directory in the zip, which holds all.
+    Parameters
+    ----------
+    bundle : its directory
+    target : the zip to write
+    top : the one directory in the zip, which holds all
+    released : date of every entry
     """
     moment = (released.year, released.month, released.day, 0, 0, 0)
     with zipfile.ZipFile(target, "w") as archive:

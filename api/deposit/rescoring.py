@@ -48,6 +48,7 @@ class Rescored:
 
     Attributes
     ----------
+    cell : what was measured
     stated : columns of the bundle's table, as text
     found : the same, measured from its samples
     seconds : since the cell before
@@ -79,6 +80,11 @@ def repeatable(bundle: Path, scores: Mapping[Cell, Mapping[str, str]]) -> list[C
     """List the scores that can be measured from a bundle's samples alone, in order.
 
     Not those without a number, of models that refuse their calibration.
+
+    Parameters
+    ----------
+    bundle : its directory
+    scores : its rows by cell
     """
     known, whole = installed_parts(), _whole(bundle)
     return [
@@ -94,7 +100,10 @@ def repeatable(bundle: Path, scores: Mapping[Cell, Mapping[str, str]]) -> list[C
 def draw(cells: Sequence[Cell], count: int, seed: int) -> list[Cell]:
     """Return cells drawn at random, sorted; each cell's lot is a digest of the seed and the cell.
 
-    RescoringError for a count below 1 or above the number of cells.
+    Raises
+    ------
+    RescoringError
+        For a count below 1 or above the number of cells.
     """
     if not 1 <= count <= len(cells):
         raise RescoringError(
@@ -110,9 +119,17 @@ def draw(cells: Sequence[Cell], count: int, seed: int) -> list[Cell]:
 def rescore(bundle: Path, cells: Sequence[Cell]) -> Iterator[Rescored]:
     """Measure cells again from a bundle's samples; nothing is simulated.
 
-    `cells`: of `repeatable`, sorted.
+    Parameters
+    ----------
+    bundle : its directory
+    cells : of `repeatable`, sorted
 
-    UnknownNameError for a data set or an algorithm that is not installed.
+    Raises
+    ------
+    FileNotFoundError
+        Where the bundle has no table of scores.
+    UnknownNameError
+        For a data set or an algorithm that is not installed.
     """
     known, stated = installed_parts(), read_scores(bundle)
     data = cast("KeptStages", _Deposited(bundle, known))

@@ -122,8 +122,12 @@ def verify(directory: Path) -> list[Problem]:
     table against its description; at last its other forms.
     Whoever makes the bundle anew can change a number in all of them: `UNSEEN`.
 
-    NoBundleError where the directory is no bundle. FileRefusedError where the list of checksums
-    cannot be read.
+    Raises
+    ------
+    NoBundleError
+        Where the directory is no bundle.
+    FileRefusedError
+        Where the list of checksums cannot be read.
     """
     if not (directory / CHECKSUMS).is_file():
         raise NoBundleError(f"{directory}: not a bundle, it has no {CHECKSUMS}")

@@ -15,7 +15,11 @@ from survey_data.editions import SURVEY
 class Addresses:
     """Addresses of the marks of a figure.
 
-    `page`: address of the figure's own page, with its query. `where`: the figure's filters.
+    Parameters
+    ----------
+    facts : the studies
+    page : address of the figure's own page, with its query
+    where : the figure's filters
     """
 
     def __init__(self, facts: Facts, page: str, where: Where) -> None:

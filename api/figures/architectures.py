@@ -19,6 +19,7 @@ class Point:
 
     Attributes
     ----------
+    name : as labelled
     address : where a press leads
     across, error_deg : its place
     bound_deg : the limit of its error; None where it has none

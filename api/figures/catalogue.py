@@ -58,14 +58,18 @@ def figure(
 ) -> Figure:
     """Return one of the survey's figures.
 
-    InvalidValueError for a name, a level or a value that is not known.
-
     Parameters
     ----------
     name : of `TITLES`
+    facts : the studies
     where : keeps some of them, as `registry.flows.flows` does
     page : address of the figure's page, with its query; where rows of its table are linked to
     counting : of flows, as `registry.flows.flows` counts
+
+    Raises
+    ------
+    InvalidValueError
+        For a name, a level or a value that is not known.
     """
     if name not in TITLES:
         raise unknown_name("figure", name, TITLES)

@@ -36,7 +36,11 @@ def matrix_figure(
 ) -> Figure:
     """Return the matrix of the studies that meet `where`, by two attributes or levels.
 
-    InvalidValueError for a level that is not known, naming those that are.
+    Raises
+    ------
+    InvalidValueError
+        For a level that is not known, naming those that are; for `where` as
+        `registry.flows.flows`.
     """
     taxonomy = facts.taxonomy
     for name, level in (("rows", rows), ("columns", columns)):

@@ -33,6 +33,7 @@ class Figure:
         numbers are those of the rows, and `customdata` of a mark is made by `mark`
     studies : number of those that meet the filters
     left_out : studies that a part of the figure cannot show, by level
+    options : what was asked besides filters
     counts : of the matrix: state -> number of pairs
     """
 

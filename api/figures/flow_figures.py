@@ -66,13 +66,17 @@ def flow_figure(
 ) -> Figure:
     """Return a Sankey diagram of the studies that meet `where`.
 
-    InvalidValueError as `registry.flows.flows`.
-
     Parameters
     ----------
     name : of `CHAINS`
+    facts : the studies
     addresses : where marks lead
     where, counting : as `registry.flows.flows` takes them
+
+    Raises
+    ------
+    InvalidValueError
+        As `registry.flows.flows`.
     """
     chain = CHAINS[name]
     found = flows(chain.levels, where, counting, facts=facts)
@@ -84,7 +88,11 @@ def answer_figure(
 ) -> Figure:
     """Return a Sankey diagram of the studies behind an answer.
 
-    `answer`, `counting`, `grouped`: as `registry.paths.answer_flow` takes them.
+    Parameters
+    ----------
+    answer, counting, grouped : as `registry.paths.answer_flow` takes them
+    facts : the studies
+    page : address of the answer, with its query
     """
     made = answer_flow(answer, counting, grouped=grouped)
     keys = tuple(sorted({key for node in made.nodes for key in node.studies}))

@@ -29,10 +29,15 @@ _DOTS_PER_INCH = 180
 def picture(plotly: Mapping[str, Any], title: str, description: str = "") -> str:
     """Return the picture of a specification as SVG, the same for the same specification.
 
-    `plotly`: as `api.figures.specification.specification` makes it. `title`, `description`: what
-    the SVG says of itself.
+    Parameters
+    ----------
+    plotly : as `api.figures.specification.specification` makes it
+    title, description : what the SVG says of itself
 
-    ValueError for a trace of a type that cannot be drawn.
+    Raises
+    ------
+    ValueError
+        For a trace of a type that cannot be drawn.
     """
     return _picture(json.dumps(plotly), title, description)
 

@@ -49,6 +49,7 @@ def robustness_figure(
 
     Parameters
     ----------
+    items : cells
     rows : extractor or model
     asked : hazards and conditions that are asked for
     datasets, best : those that have all of them, and the best row on each

@@ -45,8 +45,11 @@ def sankey(
 ) -> Plotly:
     """Return the diagram of nodes that have a band.
 
-    `stages`, `bands`: nodes, each column from top to bottom, and links. `pinned`: columns whose
-    order stays as it is given.
+    Parameters
+    ----------
+    stages, bands : nodes, each column from top to bottom, and links
+    headings : of the columns
+    pinned : columns whose order stays as it is given
     """
     linked = {end for band in bands for end in (band.source, band.target)}
     nodes = [stage for stage in stages if stage.id in linked]
@@ -149,8 +152,10 @@ SWEEPS = 8
 def crossings(columns: Columns, links: Links) -> float:
     """Return the sum over pairs of crossing links of the product of their values.
 
-    `columns`: node ids, column by column, each from top to bottom. `links`: (source, target) in
-    neighbouring columns -> value.
+    Parameters
+    ----------
+    columns : node ids, column by column, each from top to bottom
+    links : (source, target) in neighbouring columns -> value
     """
     place = {node: at for column in columns for at, node in enumerate(column)}
     total = 0.0
@@ -175,8 +180,10 @@ def order(
 ) -> tuple[tuple[str, ...], ...]:
     """Return the columns with their nodes in an order of few crossings.
 
-    `columns`, `links`: as in `crossings`. `pinned`: indices of columns whose order stays as it is
-    given.
+    Parameters
+    ----------
+    columns, links : as in `crossings`
+    pinned : indices of columns whose order stays as it is given
     """
     best = current = tuple(tuple(column) for column in columns)
     fewest = crossings(best, links)

@@ -67,7 +67,10 @@ def sankey(figure: Figure, plotly: Mapping[str, Any]) -> None:
 def pixels_of_unit(nodes: Sequence[tuple[float, float]], height: float, pad: float) -> float:
     """Return the height of a unit: the fullest column takes all of it.
 
-    `nodes`: (column, amount) of each. `height`, `pad`: of the diagram, and between nodes, px.
+    Parameters
+    ----------
+    nodes : (column, amount) of each
+    height, pad : of the diagram, and between nodes, px
     """
     columns: dict[float, list[float]] = {}
     for column, amount in nodes:

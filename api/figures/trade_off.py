@@ -48,6 +48,7 @@ def trade_off_figure(
 
     Parameters
     ----------
+    rows : as `TradeOffRow`
     across, level : of `AXES` and `ERRORS`
     timed_on : processor of the running times
     left_out, folded : rows without a value across, and those far behind

@@ -88,11 +88,18 @@ def cached_site() -> Path | None:
 def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     """Build the site into a directory, which is replaced whole or not at all; return warnings.
 
-    `out`: of the site; an earlier one there is replaced. `progress`: called as ``progress(done,
-    total, what)`` in pages, each read and written.
+    Parameters
+    ----------
+    out : of the site; an earlier one there is replaced
+    progress : called as ``progress(done, total, what)`` in pages, each read and written
 
-    GuideError where what builds it is not installed, it fails, or `out` holds anything but an
-    earlier site.
+    Raises
+    ------
+    GuideError
+        Where what builds it is not installed, it fails, or `out` holds anything but an earlier
+        site.
+    UnreplaceableError
+        Where `out` is the root of a file system.
     """
     missing = missing_builders()
     if missing:

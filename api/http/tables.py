@@ -67,8 +67,14 @@ _PARTS = {
 class Table(NamedTuple):
     """A document at an address below /v1.
 
-    The docstring of the service's function is its description, `summary` its name in the reference;
-    `kind` says in which media types it can be had.
+    Attributes
+    ----------
+    path : below /v1
+    function : of the service; its docstring is the description
+    model : of the document
+    summary : its name in the reference
+    kind : the media types it can be had in
+    method : of HTTP
     """
 
     path: str

@@ -42,8 +42,11 @@ _SAID = {
 def documents(bundle: Path, who: Identity, descriptor: Mapping[str, Any]) -> dict[str, Any]:
     """Return Croissant documents by their path in the bundle.
 
-    `bundle`: its directory, with tables, Parquet and samples written. `descriptor`: its
-    datapackage.json.
+    Parameters
+    ----------
+    bundle : its directory, with tables, Parquet and samples written
+    who : made it
+    descriptor : its datapackage.json
     """
     tables = {
         folder: [

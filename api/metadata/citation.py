@@ -71,8 +71,11 @@ class Author:
 def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     """Read the authors of a CITATION.cff (Citation File Format 1.2.0).
 
-    CitationError where the text is no YAML, has no list of authors, or an entry is neither person
-    nor organisation.
+    Raises
+    ------
+    CitationError
+        Where the text is no YAML, has no list of authors, or an entry is neither person nor
+        organisation.
     """
     try:
         document = yaml.safe_load(text)
@@ -104,7 +107,9 @@ def unfilled(listed: Sequence[Author], address: str | None) -> list[str]:
 def persistent(text: str) -> str | None:
     """Return the DOI that a CITATION.cff gives the work as an address; None where it gives none.
 
-    `text`: of the file; its `doi`, else the first of its `identifiers` that is one.
+    Parameters
+    ----------
+    text : of the file; its `doi`, else the first of its `identifiers` that is one
     """
     cited = yaml.safe_load(text) or {}
     named = [cited.get("doi")]

@@ -21,7 +21,10 @@ _SPDX = "https://spdx.org/licenses/"
 def codemeta(citation: str) -> dict[str, Any]:
     """Return the metadata of the software.
 
-    CitationError where that cannot be read.
+    Raises
+    ------
+    CitationError
+        As `api.metadata.citation.authors`.
     """
     people = authors(citation, "CITATION.cff")
     cited: Mapping[str, Any] = yaml.safe_load(citation)

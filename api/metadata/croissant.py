@@ -46,6 +46,8 @@ def file_object(
     name : of the file, unique within the data set
     address : where it is: a URL, or a path from the folder of the document
     media_types : the first is the one that Croissant knows
+    description : what it holds
+    content : its bytes
     """
     return {
         "@type": "cr:FileObject",
@@ -68,6 +70,8 @@ def record_set(
     ----------
     name : unique within the data set
     file : name of the file
+    description : what a row is
+    columns : in order
     key : columns that tell rows apart
     """
     keys = [{"@id": f"{name}/{column}"} for column in key]
@@ -114,7 +118,15 @@ class DatasetDescription:
 def croissant(
     what: DatasetDescription, who: Identity, files: Sequence[Entity], tables: Sequence[Entity]
 ) -> dict[str, Any]:
-    """Return the metadata of a data set as JSON-LD."""
+    """Return the metadata of a data set as JSON-LD.
+
+    Parameters
+    ----------
+    what : name, description, version and licence of the data set
+    who : project whose authors and date of release are stated
+    files : as `file_object` describes them
+    tables : in the files, as `record_set` describes them
+    """
     return {
         "@context": dict(CONTEXT),
         "@type": "sc:Dataset",

@@ -15,7 +15,10 @@ def fields(
 ) -> list[dict[str, Any]]:
     """Describe columns as fields of a Table Schema.
 
-    ValueError for a column that the model does not have or describe.
+    Raises
+    ------
+    ValueError
+        For a column that the model does not have or describe.
     """
     known = described_columns(model)
     unknown = [name for name in columns if name not in known or not known[name].description]
@@ -44,13 +47,16 @@ def schema(
 ) -> dict[str, Any]:
     """Describe a table as Table Schema v2.
 
-    ValueError as `fields`: a table does not go out half described.
-
     Parameters
     ----------
     model, columns : as `fields`
     primary : columns that identify a row
     foreign : column -> (resource, column) that its values stand in
+
+    Raises
+    ------
+    ValueError
+        As `fields`: a table does not go out half described.
     """
     described: dict[str, Any] = {
         "$schema": TABLE_SCHEMA,

@@ -33,6 +33,9 @@ class Identity:
 
     Attributes
     ----------
+    title : name for people
+    version : of the distribution
+    summary : one sentence
     authors : as CITATION.cff names them
     released : date of this version
     citation : text of CITATION.cff (Citation File Format 1.2.0)
@@ -53,7 +56,12 @@ class Identity:
 def identity() -> Identity:
     """Say who the running code is.
 
-    MissingFileError where a licence or CITATION.cff is not found.
+    Raises
+    ------
+    MissingFileError
+        Where a licence or CITATION.cff is not found.
+    CitationError
+        Where the authors in CITATION.cff cannot be read.
     """
     number, summary = _project()
     citation = _licence("CITATION.cff")

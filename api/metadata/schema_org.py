@@ -52,7 +52,12 @@ def dataset(
 ) -> Entity:
     """Return a data set.
 
-    `variables`: meaning of what is measured, by name.
+    Parameters
+    ----------
+    card : of the data set
+    who : made it
+    landing : its page
+    variables : meaning of what is measured, by name
     """
     name = card["name"]
     return {
@@ -99,7 +104,10 @@ def record(who: Identity, landing: LandingPage, digest: str | None) -> Entity:
 def study(row: Mapping[str, Any], landing: LandingPage) -> Entity:
     """Return a mapped study; what is not known of it is left out.
 
-    `row`: key, title, authors (separated by semicolons), year, venue and doi.
+    Parameters
+    ----------
+    row : key, title, authors (separated by semicolons), year, venue and doi
+    landing : its page
     """
     doi, year = row["doi"], row["year"]
     people = [one.strip() for one in (row["authors"] or "").split(";") if one.strip()]

@@ -33,7 +33,10 @@ MEASURED: Mapping[str, str] = {
 def of_dataset(card: Mapping[str, Any], base: str | None) -> DatasetDescription:
     """Return what a data set is.
 
-    `base`: address of the service, ending in a slash; None where there is none, as in a bundle.
+    Parameters
+    ----------
+    card : of the data set
+    base : address of the service, ending in a slash; None where there is none, as in a bundle
     """
     name = card["name"]
     return DatasetDescription(
@@ -82,8 +85,11 @@ def tables_of_samples(errors: str, directions: str) -> list[Entity]:
 def files_of_samples(name: str, contents: Mapping[str, bytes], base: str) -> list[Entity]:
     """Return the files of a data set's errors and directions, as served.
 
-    `contents`: bytes by `errors` and `directions`. `base`: address of the service, ending in a
-    slash.
+    Parameters
+    ----------
+    name : of the data set
+    contents : bytes by `errors` and `directions`
+    base : address of the service, ending in a slash
     """
     said = {
         "errors": f"Errors sample by sample, condition {samples.CONDITION}.",
@@ -117,7 +123,10 @@ def table_of_data(content: bytes, name: str, base: str) -> tuple[Entity, Entity]
 def table_of_ranks(content: bytes, base: str) -> tuple[Entity, Entity]:
     """Return the CSV of the leaderboard, as served.
 
-    `base`: address of the service, ending in a slash.
+    Parameters
+    ----------
+    content : its bytes
+    base : address of the service, ending in a slash
     """
     file = file_object(
         "leaderboard.csv",

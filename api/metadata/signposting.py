@@ -67,6 +67,9 @@ class LandingPage:
     kind : class of schema.org that the page is about, such as ``Dataset``
     licence : "MIT" or "CC-BY-4.0"; None where parts differ
     identifier : persistent address to cite it by; None where there is none
+    authors : addresses of people
+    items : links to its content
+    metadata : links to what describes it
     linkset : path of the link set; None where it has none
     """
 
@@ -101,7 +104,9 @@ class LandingPage:
     def link_set(self, base: str) -> dict[str, Any]:
         """Return all links of page, content and metadata (RFC 9264, JSON).
 
-        `base`: address of the service, ending in a slash.
+        Parameters
+        ----------
+        base : address of the service, ending in a slash
         """
         anchors = [
             (self.path, self.links()),
@@ -129,7 +134,11 @@ def headers(links: Sequence[Link]) -> tuple[str, ...]:
 def landing_of_dataset(name: str, who: Identity, *, sampled: bool) -> LandingPage:
     """Return the page of a data set.
 
-    `sampled`: whether its errors are published sample by sample.
+    Parameters
+    ----------
+    name : of the data set
+    who : made it
+    sampled : whether its errors are published sample by sample
     """
     part = quote(name, safe="")
     at = f"/v1/datasets/{part}"

@@ -17,8 +17,11 @@ STEPS = 8
 class Cell:
     """What a pipeline does under a condition.
 
-    `rms_all_answers_deg`: RMS of unit 0 over all answers; None without an error. `shade`: 0 to
-    `STEPS` - 1; None without an error.
+    Attributes
+    ----------
+    rms_all_answers_deg : RMS of unit 0 over all answers; None without an error
+    shade : 0 to `STEPS` - 1; None without an error
+    status : of the score; None where there is none
     """
 
     rms_all_answers_deg: float | None
@@ -46,8 +49,12 @@ class HeatMap:
 def heat_map(board: Sequence[Row], conditions: Sequence[str], ranked_by: str, most: int) -> HeatMap:
     """Return the map of the first pipelines of one condition's board.
 
-    `conditions`: of the data set, in order. `ranked_by`: the condition whose order chooses the
-    pipelines.
+    Parameters
+    ----------
+    board : rows of every condition
+    conditions : of the data set, in order
+    ranked_by : the condition whose order chooses the pipelines
+    most : how many
     """
     chosen = [(r["extractor"], r["model"]) for r in board if r["condition"] == ranked_by][:most]
     scores = {(r["extractor"], r["model"], r["condition"]): r for r in board}

@@ -32,6 +32,7 @@ class DocstringParts:
     Attributes
     ----------
     name, module, cls : of the class
+    lead : what it does
     equations : what it implements, with the survey's labels
     notes : further notes, such as shapes, failure and cost
     parameters : (name, type, text)

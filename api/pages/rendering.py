@@ -47,8 +47,10 @@ def vars_of(functions: tuple[Any, ...]) -> dict[str, Any]:
 def render(template: str, context: Mapping[str, Any]) -> str:
     """Return a page as HTML.
 
-    `template`: file name in `templates/`. `context`: by name; `path` and `query` are what was asked
-    for.
+    Parameters
+    ----------
+    template : file name in `templates/`
+    context : by name; `path` and `query` are what was asked for
     """
     section, part = addresses.place_of(context["path"])
     return environment().get_template(template).render(section=section, part=part, **context)

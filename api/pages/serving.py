@@ -47,9 +47,11 @@ class View(Response):
     ----------
     template : file name in `templates/`
     found : the document, `document` in the template; JSON and CSV are made of it
+    answer : class that makes them
     landing : links for machines; None for a page without metadata of its own
     entity : description of the page's subject in schema.org's terms, with `landing`
     figures : those of the page, which have addresses where the page is registered with `figures`
+    context : further variables of the template
     """
 
     media_type = HTML
@@ -88,7 +90,10 @@ class View(Response):
     def figure(self, name: str | None, wanted: str) -> Response:
         """Return a figure of the page, the first without a name, for Plotly or as a picture.
 
-        Problem 404 where the page has no figure of this name.
+        Raises
+        ------
+        Problem
+            404 where the page has no figure of this name.
         """
         found = next((one for one in self.figures if name in (None, one.name)), None)
         if found is None:

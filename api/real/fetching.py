@@ -30,8 +30,6 @@ def fetch(
 ) -> list[Path]:
     """Write a set's files, its licence and its citation to a directory; returns their paths.
 
-    FetchError if a file cannot be reached, or its SHA-256 is another; nothing is written then.
-
     Parameters
     ----------
     real : RealSet
@@ -39,6 +37,11 @@ def fetch(
         Made where it does not exist.
     download : callable, optional
         Returns the bytes at an address; by default over HTTPS.
+
+    Raises
+    ------
+    FetchError
+        If a file cannot be reached, or its SHA-256 is another; nothing is written then.
     """
     get = download or _download
     texts: dict[str, str] = {}

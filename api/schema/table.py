@@ -94,10 +94,12 @@ def flat(row: Row, names: Iterable[str]) -> dict[str, Any]:
 def csv_of(names: Iterable[str], rows: Iterable[Row]) -> str:
     """Return rows as CSV (RFC 4180, but lines end in a line feed alone, as files here do).
 
-    `names`: of the columns, in order; what rows have besides is left out. `rows`: one mapping a
-    row; a member of a nested mapping is the column `outer_inner`. Lists are joined by "; ",
-    mappings that are a column themselves are JSON, nothing (None, NaN) is empty, and the taxonomy's
-    "None" is spelled out (`registry.taxonomy.taxonomy_rows`).
+    Parameters
+    ----------
+    names : of the columns, in order; what rows have besides is left out
+    rows : one mapping a row; a member of a nested mapping is the column `outer_inner`. Lists are
+        joined by "; ", mappings that are a column themselves are JSON, nothing (None, NaN) is
+        empty, and the taxonomy's "None" is spelled out (`registry.taxonomy.taxonomy_rows`)
 
     Returns
     -------

@@ -26,8 +26,12 @@ _UNITS: Mapping[str, str] = {"deg": "degrees", "us": "microseconds"}
 def meaning(name: str, said: str | None = None) -> str:
     """Return what a member means, with the unit that its name ends in.
 
-    `said`: what its model says; by default what the vocabulary says, or
-    nothing.
+    Parameters
+    ----------
+    name
+        Of the member.
+    said
+        What its model says; by default what the vocabulary says, or nothing.
     """
     if ring := _RING.fullmatch(name):
         return f"RMS error {ring[1]} to {ring[2]} degrees off the axis."

@@ -51,7 +51,9 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
     Facts are loaded once: at start-up where the server runs the lifespan, else at the first
     request that needs them.
 
-    `knowledge`: facts and measurements; the survey and the published measurements by default.
+    Parameters
+    ----------
+    knowledge : facts and measurements; the survey and the published measurements by default
     """
     app = FastAPI(
         title="Sun Sensor Atlas",

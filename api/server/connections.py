@@ -175,7 +175,10 @@ class BoundedProtocol(H11Protocol):
 class FewAtOnce:
     """ASGI middleware: what one client may ask at once, beyond which 429 is answered, and a second.
 
-    `proxies`: addresses that ask for many clients.
+    Parameters
+    ----------
+    app : the service
+    proxies : addresses that ask for many clients
     """
 
     def __init__(self, app: ASGIApp, proxies: Container[str] = ()) -> None:

@@ -20,9 +20,16 @@ Answered = TypeVar("Answered")
 def ask(function: Callable[..., Answered], known: Knowledge, **given: Any) -> Answered:
     """Call a function of the service, its arguments read as those of a request are.
 
-    `given`: parts of the path by name; `query` and `body` as mappings.
+    Parameters
+    ----------
+    function : that answers
+    known : facts and measurements
+    given : parts of the path by name; `query` and `body` as mappings
 
-    Problem for what does not fit, as over HTTP.
+    Raises
+    ------
+    Problem
+        For what does not fit, as over HTTP.
     """
     read: Callable[..., Answered] = reading(function)
     with refusing(function):

@@ -132,7 +132,10 @@ def _fields(body: CalibrationFields) -> CalibrationFields:
 async def calibrated(fields: CalibrationFields, files: Sequence[Upload]) -> Mapping[str, str]:
     """Return the text of each product by its name.
 
-    Problem 422 where the files settle no calibration, 503 where too many others wait.
+    Raises
+    ------
+    Problem
+        422 where the files settle no calibration, 503 where too many others wait.
     """
     with _noted(fields.ticket):
         return await _CALIBRATIONS.answer(

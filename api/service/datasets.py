@@ -62,7 +62,10 @@ def errors(known: Knowledge, name: DatasetName, query: SampleErrorsQuery) -> Doc
 def file(known: Knowledge, name: DatasetName, kind: str) -> bytes:
     """Return the published errors or directions of a data set's samples as Parquet.
 
-    Problem 404 where they are not published.
+    Raises
+    ------
+    Problem
+        404 where they are not published.
     """
     try:
         return known.measurements.file(samples.path_of(name, directions=kind == "directions"))

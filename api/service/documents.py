@@ -18,7 +18,10 @@ class Document:
 
     Attributes
     ----------
+    document : the JSON object
     columns : of the table, as `api.schema.table.columns_of` names them
+    rows : gives the rows of the table
+    links : values of the Link header
     cited : studies that can be had as references; None where there are none, or columns were chosen
     saved_as : name of a file of references, without suffix
     plotly : the figure of a document that is one, `data` and `layout`
@@ -47,8 +50,13 @@ def listing(
 ) -> Document:
     """Return the page of rows that a query asks for, in its order and with its columns.
 
-    `table` makes the rows of the CSV, where they are others than the items; `more` stands beside
-    them.
+    Parameters
+    ----------
+    rows : all of the list
+    path : of the list, to which a cursor is bound
+    query : says which page, in what order and with which columns
+    model, more : as `list_document`
+    table : makes the rows of the CSV of the items; these themselves where left out
     """
     shown = page(order(rows, getattr(query, "sort", None)), path, query)
     items = shown.items
@@ -64,7 +72,17 @@ def list_document(
     query: Any,
     **more: Any,
 ) -> Document:
-    """Return a page of a list as a document, narrowed to the columns that a query names."""
+    """Return a page of a list as a document, narrowed to the columns that a query names.
+
+    Parameters
+    ----------
+    shown : the page
+    items : of the JSON
+    model : of a row; its columns are those of the table
+    table : rows of the CSV; the items where left out
+    query : its `fields`, where it has any, are the columns kept in items and table
+    more : members of the document beside the items
+    """
     columns, rows = columns_of(model), items if table is None else table
     if fields := getattr(query, "fields", ()):
         columns = tuple(name for name in columns if name in fields)

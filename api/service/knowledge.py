@@ -30,9 +30,11 @@ from survey_data.editions import Choice, Edition, editions
 class Knowledge:
     """Facts, implementations and measurements.
 
-    `measurements`: the published ones by default. `survey`: knowledge of the survey's studies, to
-    which those that it does not map are added. What runs for a study of the survey is what it is
-    without them: none of them is its relative.
+    Parameters
+    ----------
+    measurements : the published ones by default
+    survey : knowledge of the survey's studies, to which those that it does not map are added. What
+        runs for a study of the survey is what it is without them: none of them is its relative
     """
 
     def __init__(
@@ -148,7 +150,10 @@ class Knowledge:
     def load_all(self) -> None:
         """Load everything now, so that no request has to wait for it.
 
-        ValueError where a file of facts or of published results cannot be read.
+        Raises
+        ------
+        ValueError
+            Where a file of facts or of published results cannot be read.
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
         _ = (

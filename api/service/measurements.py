@@ -35,7 +35,12 @@ Row = Mapping[str, Any]
 
 
 class Measurements:
-    """What has been measured, read once from published files; nothing where there are none."""
+    """What has been measured, read once from published files; nothing where there are none.
+
+    Parameters
+    ----------
+    directory : of the published files
+    """
 
     def __init__(self, directory: Path = PUBLISHED) -> None:
         self.directory = directory
@@ -270,7 +275,9 @@ class Measurements:
     def file(self, path: str) -> bytes:
         """Return the bytes of a published file; FileNotFoundError where there is none.
 
-        `path`: relative to the published files.
+        Parameters
+        ----------
+        path : relative to the published files
         """
         return read_bytes(self._store.directory / path)
 

@@ -26,8 +26,12 @@ SHOWN_BY = {"limit", "cursor", "format", "fields", "safe", "whole"}
 class Page(Generic[Row]):
     """Some rows of a list, how many the list has, and where it goes on.
 
-    `next`: cursor of the next page; None on the last one. `link`: value of the Link header; None on
-    the last page.
+    Attributes
+    ----------
+    items : the rows of this page
+    total : number of rows of the whole list
+    next : cursor of the next page; None on the last one
+    link : value of the Link header; None on the last page
     """
 
     items: Sequence[Row]
@@ -68,7 +72,10 @@ def page(rows: Sequence[Row], path: str, query: Paged) -> Page[Row]:
 
     A cursor is bound to the path and the filters it was given out for.
 
-    Problem 400 where the cursor was not given out for this list.
+    Raises
+    ------
+    Problem
+        400 where the cursor was not given out for this list.
     """
     asked = query.model_dump(exclude_defaults=True)
     filters = {name: value for name, value in asked.items() if name not in SHOWN_BY}

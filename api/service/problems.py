@@ -17,6 +17,7 @@ class Violation:
 
     Attributes
     ----------
+    parameter : the name of the parameter, body field, header or path part
     value : what came, shortened; None where nothing came
     expected : what would have been accepted, in words
     nearest : the nearest valid name or value, if any is alike
@@ -55,6 +56,8 @@ class Problem(Exception):  # noqa: N818 - as RFC 9457 calls it
     status : HTTP status code, 4xx
     kind : slug of the problem type; the type is `urn:problem-type:sun-sensor-atlas:<kind>`
     detail : what is wrong with this request; made from `errors` where left out
+    errors : the violations found, every one of them
+    headers : response headers, such as `Allow`
     """
 
     def __init__(

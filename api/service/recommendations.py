@@ -58,7 +58,10 @@ PATH = "/v1/recommendations"
 def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
     """Return the answer to requirements that were read from a query, a body or a command line.
 
-    Raises Problem for a value that the schema lacks, such as an unknown processor.
+    Raises
+    ------
+    Problem
+        For a value that the schema lacks, such as an unknown processor.
     """
     names = [n for n in (*PARAMETERS, *SETTINGS, "mission") if n in asked.model_fields_set]
     given = {name: getattr(asked, name) for name in names}

@@ -23,8 +23,10 @@ Schema = Mapping[str, Any]
 def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -> Problem:
     """Return the problem of a request that does not fit a function.
 
-    `errors`: as FastAPI lists Pydantic's; their `loc` begins with "path", "query" or "body".
-    `endpoint`: a path function, or one of the service.
+    Parameters
+    ----------
+    errors : as FastAPI lists Pydantic's; their `loc` begins with "path", "query" or "body"
+    endpoint : a path function, or one of the service
 
     Returns
     -------

@@ -254,7 +254,10 @@ _RUNG = ("extractor", "model", "own_error_deg", "availability")
 def ladder(own: Mapping[str, Any] | None, measurements: Measurements) -> dict[str, Any] | None:
     """Return the rungs below a study's reported figure, on one data set and condition.
 
-    `own`: score of the study's own method, with `dataset` and `condition`; None for none.
+    Parameters
+    ----------
+    own : score of the study's own method, with `dataset` and `condition`; None for none
+    measurements : published scores
 
     Returns
     -------

@@ -36,7 +36,10 @@ Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 class Answer(JSONResponse):
     """A document of the service; in its other media types where it has them.
 
-    NaN and infinities are null in JSON. FastAPI documents the default of `status_code`.
+    Parameters
+    ----------
+    found : the document; NaN and infinities are null in its JSON
+    status_code : of HTTP; FastAPI documents its default
     """
 
     media_types: ClassVar[tuple[str, ...]] = (JSON, CSV)
@@ -131,7 +134,11 @@ def link(made: Response, *links: str) -> Response:
 def as_asked(made: Response, wanted: str, request: Request) -> Response:
     """Return what was made as it is sent: of CSV, for a spreadsheet or with a link to that.
 
-    `made`: in the media type `wanted`. `request`: whose query says which.
+    Parameters
+    ----------
+    made : in the media type `wanted`
+    wanted : media type that the request asks for
+    request : its query says whether a CSV is for a spreadsheet
     """
     made.headers.setdefault("vary", "Accept")
     query: bytes = request.scope["query_string"]

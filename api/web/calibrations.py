@@ -32,7 +32,10 @@ _arriving = 0
 async def sent(request: Request) -> tuple[dict[str, str], tuple[Upload, ...]]:
     """Return the fields and the files of a form; fields for files that were left empty are none.
 
-    Problem as `api.web.requests.StrictRequest.form`; 503 where too many calibrations wait already.
+    Raises
+    ------
+    Problem
+        As `api.web.requests.StrictRequest.form`; 503 where too many calibrations wait already.
     """
     global _arriving  # noqa: PLW0603 - of the process
     _arriving += 1

@@ -59,7 +59,10 @@ def _weight(media_type: str, accept: str | None) -> float:
 def media_type(accept: str | None, offered: tuple[str, ...]) -> str:
     """Return the offered media type the client likes best; the first offered wins a tie.
 
-    Problem 406 where the client accepts none of those offered.
+    Raises
+    ------
+    Problem
+        406 where the client accepts none of those offered.
     """
     chosen = max(offered, key=lambda name: _weight(name, accept))
     if _weight(chosen, accept) <= 0.0:
@@ -73,7 +76,10 @@ def wanted_type(query: bytes, accept: str | None, offered: tuple[str, ...]) -> s
 
     A `format` that is none, or is given twice, is for the parameters to refuse.
 
-    Problem 406 where the client accepts none of those offered, or not the one that it asks for.
+    Raises
+    ------
+    Problem
+        406 where the client accepts none of those offered, or not the one that it asks for.
     """
     asked = _given(query, "format")
     form = FORMATS.get(asked[0]) if len(asked) == 1 else None
@@ -88,7 +94,10 @@ def wanted_type(query: bytes, accept: str | None, offered: tuple[str, ...]) -> s
 def for_spreadsheets(query: bytes) -> bool:
     """Say whether a query asks for CSV that a spreadsheet can open (`safe`).
 
-    Problem 422 where it neither asks for it nor does not.
+    Raises
+    ------
+    Problem
+        422 where it neither asks for it nor does not.
     """
     asked = _given(query, "safe")
     try:

@@ -37,7 +37,11 @@ def ranges(asked: str, size: int) -> list[range] | None:
 def parted(asked: Headers, headers: MutableHeaders, body: bytes) -> tuple[int, bytes]:
     """Return status and body of the answer to a request for a part; its headers are changed.
 
-    `asked`: headers of the request. `headers`: of the whole answer, with its ETag.
+    Parameters
+    ----------
+    asked : headers of the request
+    headers : of the whole answer, with its ETag
+    body : the whole of it
     """
     headers["accept-ranges"] = "bytes"
     known = asked.get("if-range", headers["etag"]) == headers["etag"]

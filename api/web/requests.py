@@ -95,7 +95,10 @@ class StrictRequest(Request):
     async def json(self) -> Any:
         """Return the parsed body: RFC 8259, so no NaN, no Infinity, and no member twice.
 
-        Problem as `body`, and 400 where it is not JSON.
+        Raises
+        ------
+        Problem
+            As `body`, and 400 where it is not JSON.
         """
         document = self._parse(await self.body())
         if isinstance(document, dict):
@@ -105,7 +108,10 @@ class StrictRequest(Request):
     async def form(self, **_: Any) -> FormData:  # type: ignore[override]  # awaited alone
         """Return the form (RFC 7578) in the body; its files wait on disk until all has come.
 
-        Problem 415, 413, 408 as `body`, and 400 where it cannot be read or has a field twice.
+        Raises
+        ------
+        Problem
+            415, 413, 408 as `body`, and 400 where it cannot be read or has a field twice.
         """
         self._largest = LARGEST_FORM
         self._last = b"--%s--" % self._require(FORM, f"{FORM} with a boundary")

@@ -27,7 +27,11 @@ _STYLES = ("base", "parts", "masthead", "tables", "architectures", "pages", "fig
 def file_of(place: StaticFiles, name: str, what: str) -> Response:
     """Return a file of a directory; a `Problem` (404) where it has none of this name.
 
-    `name`: path of the file in it. `what`: the directory, in words.
+    Parameters
+    ----------
+    place : the directory
+    name : path of the file in it
+    what : the directory, in words
     """
     try:
         path = Path(place.lookup_path(name)[0])

@@ -114,8 +114,10 @@ def inherited() -> socket.socket | None:
 def listen(host: str, port: int) -> socket.socket:
     """Open a listening socket, so that the port is known to be ours before anything is loaded.
 
-    OSError where the address is unknown or the port is taken or not allowed; the message says
-    which.
+    Raises
+    ------
+    OSError
+        Where the address is unknown or the port is taken or not allowed; the message says which.
     """
     try:
         family, kind, protocol, _, place = socket.getaddrinfo(

@@ -42,7 +42,10 @@ class Description:
 def description(bundle: Path) -> Description:
     """Read what a bundle says of itself, in datapackage.json and CITATION.cff.
 
-    CitationError where the authors cannot be read.
+    Raises
+    ------
+    CitationError
+        Where the authors cannot be read.
     """
     package = json.loads((bundle / "datapackage.json").read_text("utf-8"))
     citation = (bundle / "CITATION.cff").read_text("utf-8")

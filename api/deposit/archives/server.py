@@ -23,7 +23,10 @@ class Server:
     def token(self) -> SecretStr:
         """Read the token from the environment.
 
-        ArchiveError where there is none, or it is no word; what stands there is not said.
+        Raises
+        ------
+        ArchiveError
+            Where there is none, or it is no word; what stands there is not said.
         """
         text = os.environ.get(self.variable, "").strip()
         if not text:
@@ -50,7 +53,10 @@ _ADDRESS = re.compile(
 def server_at(address: str) -> Server:
     """Return another archive that runs InvenioRDM; its token is in ARCHIVE_TOKEN.
 
-    ArchiveError for anything but https://host[:port], or http:// to this machine.
+    Raises
+    ------
+    ArchiveError
+        For anything but https://host[:port], or http:// to this machine.
     """
     plain = address.removesuffix("/")
     if not _ADDRESS.fullmatch(plain):

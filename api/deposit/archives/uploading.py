@@ -58,8 +58,13 @@ class UploadResult:
 def verified(directory: Path, undone: str) -> Iterator[Bundle]:
     """Copy a bundle, verify the copy and pack it; it is there for as long as the block.
 
-    ArchiveError where anything in the bundle does not hold, or its CITATION.cff lacks authors or
-    the repository.
+    Raises
+    ------
+    ArchiveError
+        Where anything in the bundle does not hold, or its CITATION.cff lacks authors or the
+        repository.
+    CitationError
+        Where the authors in its CITATION.cff cannot be read.
     """
     directory = Path(os.path.abspath(directory))  # noqa: PTH100 - a link stays one
     with temporary_directory_beside(directory) as private:
@@ -96,10 +101,20 @@ def upload(
 ) -> UploadResult:
     """Bring a bundle into a draft; nothing becomes public.
 
-    `version_of`: published record to make the next version of; a new record by default. `draft`: to
-    go on with, where it is not the remembered one.
+    Parameters
+    ----------
+    archive : to send to
+    directory : the bundle
+    version_of : published record to make the next version of; a new record by default
+    draft : to go on with, where it is not the remembered one
+    tell : called after each file
 
-    ArchiveError where anything does not go as it should; what has been sent stays in the draft.
+    Raises
+    ------
+    ArchiveError
+        Where anything does not go as it should; what has been sent stays in the draft.
+    CitationError
+        As `verified`.
     """
     with verified(directory, "nothing was sent") as bundle:
         document = bundle.description.draft
@@ -126,8 +141,13 @@ def upload(
 def publish(archive: Archive, identifier: str, directory: Path) -> Record:
     """Make a draft public that has the files and the authors of a bundle.
 
-    ArchiveError where the bundle does not hold, authors or files of the draft are not those of the
-    bundle, or the archive does not do as asked.
+    Raises
+    ------
+    ArchiveError
+        Where the bundle does not hold, authors or files of the draft are not those of the bundle,
+        or the archive does not do as asked.
+    CitationError
+        As `verified`.
     """
     undone = "nothing was published"
     with verified(directory, undone) as bundle:

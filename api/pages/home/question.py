@@ -78,8 +78,11 @@ def form(
 ) -> dict[str, Any]:
     """Return what the form is made of.
 
-    `fields`: of the address, which fill the form. `requirements`: as they were read, with those of
-    a mission; empty for a refused question.
+    Parameters
+    ----------
+    known : whose taxonomy
+    fields : of the address, which fill the form
+    requirements : as they were read, with those of a mission; empty for a refused question
     """
     filled: dict[str, list[str]] = {}
     for name, value in fields:

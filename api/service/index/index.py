@@ -40,6 +40,7 @@ class Entry:
     id : its name among its kind
     title : what a list of results shows
     words : short words that describe it
+    text : sentences
     address : where the service tells it; None where it has no address of its own
     """
 
@@ -62,7 +63,12 @@ class Hit:
 
 @dataclass(frozen=True)
 class Index:
-    """Entries that can be searched."""
+    """Entries that can be searched.
+
+    Parameters
+    ----------
+    entries : in the order that breaks ties
+    """
 
     entries: Sequence[Entry]
 
@@ -72,8 +78,10 @@ class Index:
         What is called just so comes first; then what has every word of the question before what
         lacks one, and so on.
 
-        `question`: words; punctuation, case and accents do not matter. `kinds`: only these; all
-        where empty.
+        Parameters
+        ----------
+        question : words; punctuation, case and accents do not matter
+        kinds : only these; all where empty
         """
         words = tokens(question)
         found: dict[int, list[float]] = {}
