@@ -31,7 +31,10 @@ class ClassDisagreement:
 def accuracy_class(taxonomy: pd.DataFrame, accuracy_deg: float) -> str:
     """Return the accuracy class of an accuracy in degrees (min_deg <= accuracy < max_deg).
 
-    LookupError: no class holds it (negative or not a number).
+    Raises
+    ------
+    LookupError
+        No class holds it (negative or not a number).
     """
     return _within(_limits(taxonomy), accuracy_deg)
 

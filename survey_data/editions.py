@@ -53,7 +53,10 @@ class Edition(JsonData):
 def editions(directory: Path = DATA_DIRECTORY) -> tuple[Edition, Edition]:
     """Return the survey's edition and its extension, as they are in a folder of tables.
 
-    OSError: A table cannot be read.
+    Raises
+    ------
+    OSError
+        A table cannot be read.
     """
     mapped, others = _years("studies", directory), _years("extension_studies", directory)
     last = max(mapped)

@@ -49,7 +49,10 @@ def require_unchanged(directory: Path | str = DATA_DIRECTORY) -> None:
 def renew(directory: Path | str = DATA_DIRECTORY) -> list[str]:
     """Take changes by hand into the manifest; return the files that had any.
 
-    SurveyDataError: the tables are not valid; the manifest is left as it is.
+    Raises
+    ------
+    SurveyDataError
+        The tables are not valid; the manifest is left as it is.
     """
     from survey_data.validation.validate import validate  # noqa: PLC0415 - frictionless, half a second
 

@@ -85,6 +85,9 @@ def reported_accuracies(
 ) -> ReportedAccuracy:
     """Return a figure with its kind; without one it is unspecified.
 
-    KeyError for a kind that is not in the table.
+    Raises
+    ------
+    KeyError
+        For a kind that is not in the table.
     """
     return ReportedAccuracy(quantity, value_deg, statistics()[kind or UNSPECIFIED])

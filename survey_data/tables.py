@@ -66,8 +66,11 @@ class SurveyTables:
     def edition(self, name: Choice) -> SurveyTables:
         """Return the tables of an edition, with a column `edition` in the table of studies.
 
-        `name`: {"survey", "all"} ``all`` has the rows of studies that the survey does not map below
-        its own, in `studies`, `attributes`, `roles` and `architectures`.
+        Parameters
+        ----------
+        name : {"survey", "all"}
+            ``all`` has the rows of studies that the survey does not map below its own, in
+            `studies`, `attributes`, `roles` and `architectures`.
         """
         frames = {"studies": self.studies.assign(edition=SURVEY)}
         if name == "all":
@@ -85,8 +88,11 @@ def load(directory: str | Path | None = None) -> SurveyTables:
 
     Form, types and keys are checked here, meaning by `validate`.
 
-    SurveyDataError: A file is missing or broken, a table has no rows or a key twice, or a cell is
-    not of its column's type; names file, row and column.
+    Raises
+    ------
+    SurveyDataError
+        A file is missing or broken, a table has no rows or a key twice, or a cell is not of its
+        column's type; names file, row and column.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     frames: dict[str, pd.DataFrame] = {}

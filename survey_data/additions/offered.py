@@ -232,7 +232,10 @@ class Addition:
 def read_addition(document: TomlDocument, directory: Path = DATA_DIRECTORY) -> Addition:
     """Read a template, by the rules of our tables, whose keys are taken.
 
-    FaultsError: names every fault with its line: those of the form, or else those of the content.
+    Raises
+    ------
+    FaultsError
+        Names every fault with its line: those of the form, or else those of the content.
     """
     rows = read_table_records(directory, "attribute_definitions").rows
     complete = {cells[0]: cells[4] == "true" for _, cells in rows}

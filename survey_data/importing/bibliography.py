@@ -90,7 +90,10 @@ class Entry:
 def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
     """Read the entries of a bibliography in its order; BibTeX for any suffix but .ris.
 
-    SurveyImportError: the file cannot be read, an entry is broken, or there is none.
+    Raises
+    ------
+    SurveyImportError
+        The file cannot be read, an entry is broken, or there is none.
     """
     where = Path(path)
     text = offered_text(where, _MOST_BYTES)

@@ -60,8 +60,11 @@ def match_columns(
     give a column's target: study, title, authors, year or an attribute, or ``-`` to leave it aside;
     values of several columns of one attribute are united.
 
-    SurveyImportError: an override names an unknown column or target, or no column identifies the
-    study, or none holds an attribute.
+    Raises
+    ------
+    SurveyImportError
+        An override names an unknown column or target, or no column identifies the study, or none
+        holds an attribute.
     """
     labels = dict(_IDENTIFICATION)
     for row in tables.attribute_definitions.to_dict("records"):

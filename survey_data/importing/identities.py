@@ -85,10 +85,6 @@ def import_bibliography(
 ) -> BibliographyPlan:
     """Compare the survey's bibliography with our table of studies, and take it over when asked.
 
-    SurveyImportError: the file is no bibliography, it says nothing of a study named to be replaced,
-    or (with `apply`) the tables would be invalid or cannot be written; nothing has been written.
-    SurveyDataError: our own tables cannot be read.
-
     Parameters
     ----------
     path : str or Path
@@ -99,6 +95,14 @@ def import_bibliography(
         Keys of studies whose confirmed identity is replaced where the bibliography contradicts it.
     apply : bool
         Write. Applying the same file twice changes nothing the second time.
+
+    Raises
+    ------
+    SurveyImportError
+        The file is no bibliography, it says nothing of a study named to be replaced, or (with
+        `apply`) the tables would be invalid or cannot be written; nothing has been written.
+    SurveyDataError
+        Our own tables cannot be read.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     entries = read_bibliography(path)

@@ -114,10 +114,6 @@ def import_table(
 ) -> ImportPlan:
     """Compare a table with ours and, when asked, take over what it says.
 
-    SurveyImportError: the file is no table, its columns cannot be matched, or (with `apply`) a
-    value cannot be read, the tables would be invalid or cannot be written; nothing has been
-    written. SurveyDataError: our own tables cannot be read.
-
     Parameters
     ----------
     path : str or Path
@@ -131,6 +127,14 @@ def import_table(
     apply : bool
         Write. Without it unreadable cells are listed in the plan's `errors` instead of raised.
         Applying the same table twice changes nothing the second time.
+
+    Raises
+    ------
+    SurveyImportError
+        The file is no table, its columns cannot be matched, or (with `apply`) a value cannot be
+        read, the tables would be invalid or cannot be written; nothing has been written.
+    SurveyDataError
+        Our own tables cannot be read.
     """
     frame = read_table(path, sheet)
     folder = DATA_DIRECTORY if directory is None else Path(directory)
@@ -149,7 +153,10 @@ def plan_import(
     Several rows on one study (same key or title) are united. A cell that states nothing leaves
     ours as it is; one that cannot be read is among the plan's `errors`.
 
-    SurveyImportError: not one row is about a study of ours.
+    Raises
+    ------
+    SurveyImportError
+        Not one row is about a study of ours.
     """
     reader = ValueReader(tables)
     frame = frame.fillna("")

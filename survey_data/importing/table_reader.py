@@ -45,8 +45,11 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
     tab or bar, whichever cuts the header into most columns. XLSX is known by its content and its
     suffix, which must agree; without `sheet` the first visible sheet that is not empty is read.
 
-    SurveyImportError: the file cannot be read as a table, or is larger than the limits of this
-    module: names row and column where there is one.
+    Raises
+    ------
+    SurveyImportError
+        The file cannot be read as a table, or is larger than the limits of this module: names row
+        and column where there is one.
     """
     path = Path(path)
     data = offered_bytes(path, _LARGEST_BYTES)

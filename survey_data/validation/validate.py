@@ -43,7 +43,10 @@ def validate(directory: str | Path | None = None) -> list[Problem]:
     They are in the order of file, row and column. A table whose form is broken is left out of the
     checks of content, so that one broken cell is not reported a hundred times.
 
-    NotADirectoryError: there is no such directory. Nothing in the files themselves raises.
+    Raises
+    ------
+    NotADirectoryError
+        There is no such directory. Nothing in the files themselves raises.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     if not folder.is_dir():
