@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from inspect import getdoc
 from pathlib import PurePosixPath
 from typing import Annotated, Any
@@ -37,14 +37,15 @@ async def experiments(known: Known) -> View:
 
 @router.page("/experiments/{name}")
 async def experiment(known: Known, name: Name) -> View:
-    """Show an experiment: what it measures, its pictures and its rows."""
+    """Show an experiment: what it measures, its pictures and its table; its JSON has whole rows."""
     found = _experiment(name, known)
-    rows = [_flat(row) for row in found.rows()]
-    columns = tuple(dict.fromkeys(column for row in rows for column in row))
-    document = {**_about(found), "pictures": list(_drawn(found)), "items": rows}
+    table = found.table()
+    columns = tuple(dict.fromkeys(column for row in table for column in row))
+    document = {**_about(found), "pictures": list(_drawn(found)), "items": found.rows()}
     return View(
         "experiments/one.html",
-        Document(document, columns, lambda: rows),
+        Document(document, columns, lambda: table),
+        table=table,
         columns=columns,
         most=SHOWN,
     )
@@ -70,12 +71,3 @@ def _about(one: RecordedExperiment[Any]) -> dict[str, Any]:
 
 def _drawn(one: RecordedExperiment[Any]) -> Mapping[str, Callable[[], str]]:
     return {PurePosixPath(path).name: draw for path, draw in one.pictures().items()}
-
-
-def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the members of a row that a cell can hold."""
-    return {
-        name: value
-        for name, value in row.items()
-        if isinstance(value, str) or not isinstance(value, Mapping | Sequence)
-    }

@@ -14,7 +14,7 @@ from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import RecordedExperiment
 from benchmark.spoofing import plots
-from benchmark.spoofing.measure import Counts, SpoofTask, measure
+from benchmark.spoofing.measure import RATES, Counts, SpoofTask, measure
 from benchmark.spoofing.readings import Calibrated
 from benchmark.spoofing.record import RECORD, cell_of
 
@@ -33,6 +33,9 @@ SENSORS: Mapping[str, Counts] = {
 }
 #: Read by a second extractor, which has an answer to two lights.
 ALSO = (("cmos-single-aperture", "bcm"),)
+
+#: Tests by which a reading alarms. Bare faces have none beside them to agree with.
+_TESTS = ("pattern", "brightness", "agreement")
 
 
 class Spoofing(RecordedExperiment[str]):
@@ -76,6 +79,10 @@ class Spoofing(RecordedExperiment[str]):
             "spoofing-roc.svg": lambda: plots.curves(self.rows()),
         }
 
+    def table(self) -> list[Row]:
+        """Return a row for each sensor and laser; lasers that rise are in the rows alone."""
+        return [_flat(sensor, level) for sensor in self.rows() for level in sensor["levels"]]
+
     def tasks(self, cells: Sequence[str]) -> Iterator[SpoofTask]:
         """Make a task of each sensor; masked ones have bare faces beside them."""
         parts = self.parts
@@ -95,3 +102,20 @@ class Spoofing(RecordedExperiment[str]):
         """Set thresholds on clean readings, then shine the laser."""
         row = measure(task)
         return [(cell_of(row), row)]
+
+
+def _flat(sensor: Row, level: Row) -> Row:
+    """Return what came of one laser, then of the sensor's clean readings, in cells."""
+    noticed = {f"noticed_{name}": level["noticed"].get(name) for name in (*_TESTS, "either")}
+    curve = zip(RATES, level["curve"], strict=True)
+    alarms = {f"checking_alarms_{name}": sensor["alarms"].get(name) for name in _TESTS}
+    return {
+        **{name: sensor[name] for name in ("dataset", "extractor", "model")},
+        **{name: value for name, value in level.items() if name not in {"noticed", "curve"}},
+        **noticed,
+        **{f"noticed_pattern_at_{rate:g}": count for rate, count in curve},
+        **{name: sensor[name] for name in ("has_pattern", "own_error_deg", "knowable")},
+        **{name: sensor[name] for name in ("setting", "checking")},
+        **{f"checking_{name}": sensor[name] for name in ("answered", "flagged")},
+        **alarms,
+    }

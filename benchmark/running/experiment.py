@@ -125,6 +125,17 @@ class RecordedExperiment(Experiment[C]):
             for row in self.record.read(self.directory).values()
         ]
 
+    def table(self) -> list[Row]:
+        """Return the rows as a table of numbers and texts, without members that are neither."""
+        return [
+            {
+                name: value
+                for name, value in row.items()
+                if isinstance(value, str) or not isinstance(value, Mapping | Sequence)
+            }
+            for row in self.rows()
+        ]
+
     def comparable_members(self, row: Row) -> Row:
         """Return those members of a row that another run repeats."""
         return {name: value for name, value in row.items() if name != "key"}

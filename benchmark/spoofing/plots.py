@@ -27,23 +27,25 @@ _LEVELS = dict(zip(SUNS, (FAINT, GREEN, BLUE, PURPLE, VERMILION), strict=True))
 
 def levels(rows: Sequence[Row]) -> str:
     """Draw by the laser's level, as SVG, who believes it and what notices."""
+    title = "A laser beside the Sun: shares of readings that believe it and that notice it"
     said = "across: signal of the laser over the Sun's; noticed at one false alarm in 10,000"
     legend = [(label, colour, style) for _, label, colour, style in _LINES]
-    return _drawn(rows, _by_level, said, legend)
+    return _drawn(rows, _by_level, title, said, legend)
 
 
 def curves(rows: Sequence[Row]) -> str:
     """Draw by the rate of false alarms, as SVG, what share the residual notices."""
+    title = "A laser beside the Sun: share of readings that the pattern's residual notices"
     legend = [(f"{suns:g} Suns", colour, "-") for suns, colour in _LEVELS.items()]
-    return _drawn(rows, _by_rate, "across: false alarms a clean reading, residual alone", legend)
+    said = "across: false alarms a clean reading, residual alone"
+    return _drawn(rows, _by_rate, title, said, legend)
 
 
 def _drawn(
-    rows: Sequence[Row], fill: Fill, said: str, legend: Sequence[tuple[str, str, str]]
+    rows: Sequence[Row], fill: Fill, title: str, said: str, legend: Sequence[tuple[str, str, str]]
 ) -> str:
     from matplotlib.lines import Line2D  # noqa: PLC0415 - a second that only pictures need
 
-    title = "A laser beside the Sun: shares of readings that believe it and that notice it"
     figure = partial(
         panel_figure,
         rows,

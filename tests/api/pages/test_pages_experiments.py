@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
 import pytest
 from fastapi import FastAPI
@@ -14,6 +16,7 @@ from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
 from benchmark import experiments as package
 from benchmark.experiments.__main__ import main
+from benchmark.results.store import PUBLISHED
 from tests.api.conftest import Client
 
 MODULE = '''
@@ -93,6 +96,48 @@ def test_one_file_is_a_whole_experiment(
     assert described in page.text
     assert "/experiments/cubes/cubes.svg" in page.text
     assert client.get("/experiments/cubes.csv").text == "cell,cube\n2,8\n3,27\n4,64\n"
+    items = client.get("/experiments/cubes.json").json()["items"]
+    assert items[0] == {"cell": "2", "cube": 8, "parts": [2, 2, 2]}
     assert "<title>Cubes" in client.get("/experiments/cubes/cubes.svg").text
     assert client.get("/experiments/cubes/none.svg").status_code == 404
     assert client.get("/experiments/none").status_code == 404
+
+
+def test_every_laser_of_the_record_is_in_the_json_and_a_row_of_the_csv(atlas: Client) -> None:
+    sensors = json.loads((PUBLISHED / "spoofing.json").read_text("utf-8"))["sensors"]
+    items = atlas.get("/experiments/spoofing.json").json()["items"]
+    assert [one["levels"] for one in items] == [one["levels"] for one in sensors]
+    assert [one["rises"] for one in items] == [one["rises"] for one in sensors]
+    counts = ("readings", "answered", "flagged", "deceived", "turned")
+    lasers = [
+        (
+            *(of["dataset"], of["extractor"], str(at["sun"]).lower(), str(at["suns"])),
+            *(str(at[name]) for name in counts),
+            *(str(at["noticed"]["pattern"]), str(at["curve"][0]), str(of["alarms"]["pattern"])),
+        )
+        for of in sensors
+        for at in of["levels"]
+    ]
+    names = ("dataset", "extractor", "sun", "suns", *counts, "noticed_pattern")
+    names += ("noticed_pattern_at_0.1", "checking_alarms_pattern")
+    table = atlas.table("/experiments/spoofing")
+    assert [tuple(row[name] for name in names) for row in table] == lasers
+    page = atlas.get("/experiments/spoofing", accept="text/html").text
+    assert f"{len(lasers)} rows." in page
+
+
+@pytest.mark.parametrize(
+    ("file", "shown"),
+    [
+        ("spoofing.svg", "that believe it and that notice it"),
+        ("spoofing-roc.svg", "that the pattern's residual notices"),
+    ],
+)
+def test_each_picture_of_lasers_has_the_title_of_what_it_shows(
+    file: str, shown: str, atlas: Client
+) -> None:
+    drawn = ET.fromstring(atlas.get(f"/experiments/spoofing/{file}").content)
+    title = drawn.findtext("{http://www.w3.org/2000/svg}title")
+    assert title is not None
+    assert title.endswith(shown)
+    assert title in [text.text for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
