@@ -54,6 +54,8 @@ COLUMNS: Mapping[str, str] = {
     "error_deg": "float",
     "outcome": "int8",
 }
+#: Greatest number that the column `unit` holds.
+GREATEST_UNIT = int(np.iinfo(np.int8).max)
 DIRECTION_COLUMNS: Mapping[str, str] = {
     "sample": "int16",
     "sun_x": "float",

@@ -26,6 +26,7 @@ from benchmark.results.components import Components, current
 from benchmark.results.digests import method_modules, modules_of
 from benchmark.results.modules import STAGES, modules_digest
 from benchmark.results.record import Record, open_record
+from benchmark.results.samples import GREATEST_UNIT
 from benchmark.results.store import Store
 from benchmark.running.fitting import data_condition
 from benchmark.running.kept_stages import KeptStages
@@ -77,10 +78,16 @@ def run(
     the store, and looked for there and beside `others`, unless `keep_stages` is False; the numbers
     are the same.
 
-    UnknownNameError for a cell whose names are not installed, StoreLockedError when another runner
-    writes to the store; ImportError, ClusterError, OtherCodeError when the cluster cannot be
-    measured on, or has other code. After WorkerLostError, of killed workers, and
-    RunInterruptedError, on Ctrl-C, what was measured is kept and not measured again.
+    Raises
+    ------
+    UnknownNameError, ValueError
+        As `known_cells`; ValueError for less than one worker, too.
+    StoreLockedError
+        When another runner writes to the store.
+    ImportError, ClusterError, OtherCodeError
+        When the cluster cannot be measured on, or has other code.
+    WorkerLostError, RunInterruptedError
+        When workers were killed, and on Ctrl-C; what was measured is kept and not measured again.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
@@ -190,7 +197,10 @@ def failures(cells: Iterable[Cell], record: Record) -> tuple[tuple[Cell, str], .
 def stale(cells: Iterable[Cell], store: Store, *, parts: Parts | None = None) -> list[Cell]:
     """List the cells that the store does not hold as code and data now are; renders nothing.
 
-    UnknownNameError for a cell whose names are not installed.
+    Raises
+    ------
+    UnknownNameError, ValueError
+        As `known_cells`.
     """
     known = parts or installed_parts()
     wanted = known_cells(cells, known)
@@ -202,9 +212,19 @@ def stale(cells: Iterable[Cell], store: Store, *, parts: Parts | None = None) ->
 
 
 def known_cells(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
-    """Cells once each, in order; UnknownNameError for one whose names are not installed."""
+    """Return cells once each, in order.
+
+    Raises
+    ------
+    UnknownNameError
+        For a cell whose names are not installed.
+    ValueError
+        For a unit below 0 or above `GREATEST_UNIT`, the last whose errors can be kept.
+    """
     wanted = sorted(set(cells))
     for cell in wanted:
+        if not 0 <= cell.unit <= GREATEST_UNIT:
+            raise ValueError(f"{cell}: expected a unit from 0 to {GREATEST_UNIT}")
         parts.preset(cell.dataset)
         parts.extractor(cell.extractor)
         parts.model(cell.model)

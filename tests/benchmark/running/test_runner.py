@@ -11,6 +11,7 @@ import pytest
 from benchmark.contract import UnknownNameError
 from benchmark.metrics.score import repeatability_deg
 from benchmark.plan import combinations as plan
+from benchmark.results import samples
 from benchmark.results.record import Record
 from benchmark.results.store import Store
 from benchmark.running import runner
@@ -224,3 +225,19 @@ def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(name, 
         with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
             call([known, wrong], store, parts=fake_plan.parts())
     assert not store.directory.exists()
+
+
+def test_the_greatest_unit_is_kept_and_one_more_is_refused_before_anything_is_done(store):
+    """The column of units is a signed byte, which ends at 127."""
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(conditions=(samples.CONDITION,)),))
+    first = plan.Cell("fake-diodes", samples.CONDITION, "fake-currents", "fake-least-squares")
+    for unit in (128, -1):
+        wrong = dataclasses.replace(first, unit=unit)
+        for call in (runner.stale, runner.run):
+            with pytest.raises(ValueError, match=rf"unit {unit}: expected a unit from 0 to 127$"):
+                call([first, wrong], store, parts=parts)
+    assert not store.directory.exists()
+    last = dataclasses.replace(first, unit=127)
+    runner.run([last], store, parts=parts)
+    kept = samples.read_samples("fake-diodes", store.directory)
+    assert set(kept["unit"]) == {127}
