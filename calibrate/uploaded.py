@@ -42,12 +42,11 @@ _PATIENCE = 3.0
 MOST_FILES, MOST_ROWS = 20, 100_000
 _LONGEST_FAULT = 200
 _TASK, _SAID = "task.json", "said.json"
-#: The process takes the processor when no answer wants it, from before it loads anything.
+#: The process steps back behind answers, from before it loads anything. Not to the lowest priority:
+#: beside other work that keeps the machine busy it would load for minutes.
 _BEGIN = """
-import contextlib, os, runpy
-os.setpriority(os.PRIO_PROCESS, 0, 19)
-with contextlib.suppress(AttributeError, OSError):  # not on every system
-    os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+import os, runpy
+os.setpriority(os.PRIO_PROCESS, 0, 10)
 runpy.run_module("calibrate.uploaded", run_name="__main__", alter_sys=True)
 """
 _NAME = re.compile(r"[^A-Za-z0-9._-]+")
