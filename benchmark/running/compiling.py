@@ -31,8 +31,9 @@ from benchmark.simulator.sensors.line_sensor import LineSensor
 if TYPE_CHECKING:
     from benchmark.datasets.preset import Preset
 
-#: Samples of a split that are generated for a sensor's kernels, and that an extractor reads.
-_MADE, _READ = 1, 2
+#: Samples of a split that are generated for a sensor's kernels, and that an extractor reads; frames
+#: of poses that a model learns from.
+_MADE, _READ, _LEARNT = 1, 2, 120
 #: Conditions that call kernels of their own, where a data set has them.
 _OWN_KERNELS = ("albedo", "ghosts")
 
@@ -54,7 +55,8 @@ class _Data:
         correct(correction(preset, first), made)
         for condition in (first, *(name for name in others if name in _OWN_KERNELS)):
             preset.generate(condition, "test", _MADE)
-            preset.bound(condition, "test", _MADE)
+            # what is unknown of a unit in flight calls the same kernels for every sample flown
+            getattr(preset, "sample_bound", preset.bound)(condition, "test", _MADE)
         setup = preset.setups[first]
         if isinstance(setup.sensor, LineSensor):  # a reader's design may leave diffraction out
             plain = replace(setup, sensor=replace(setup.sensor, spectrum=None))
@@ -120,7 +122,8 @@ class _Solving:
         return self.model.about.name
 
     def __call__(self) -> None:
-        samples = self.preset.generate(self.preset.conditions[0], "calibration")
+        some = _LEARNT if self.preset.observation is Observation.FRAMES else None
+        samples = self.preset.generate(self.preset.conditions[0], "calibration", some)
         method = self.extractor.for_sensor(self.preset.geometry)
         features = extract_features(method, samples.observations, samples.origin_px)
         model = self.model.for_sensor(self.preset.geometry, method.about.kind)
