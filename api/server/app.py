@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -18,6 +19,7 @@ from api.http.openapi import describe
 from api.metadata.identity import version
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
+from api.server.asking import visit_start_page
 from api.server.kept import KeptAnswers
 from api.server.prefix import UnderPrefix
 from api.service.knowledge import Knowledge
@@ -91,4 +93,6 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.knowledge.load_all()
     app.openapi()  # now, as it holds up every answer meanwhile
+    visit = asyncio.create_task(visit_start_page(app))
     yield
+    visit.cancel()

@@ -8,11 +8,9 @@ import io
 import json
 import sys
 from collections.abc import Mapping
-from typing import Annotated, Any
-from urllib.parse import unquote
+from typing import Annotated
 
 import typer
-from starlette.types import ASGIApp
 
 from api.cli.table_output import Format, FormatOption, emit, emit_csv
 from api.cli.wrong_call import WrongCallError
@@ -34,6 +32,7 @@ def get(
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; the help does without it
     from api.server.app import create_app  # noqa: PLC0415
+    from api.server.asking import fetch_answer  # noqa: PLC0415
 
     path, _, query = address.partition("?")
     if not path.startswith("/"):
@@ -51,38 +50,6 @@ def get(
     sys.stdout.flush()
     sys.stdout.buffer.write(body.rstrip(b"\n") + b"\n")
     sys.stdout.buffer.flush()
-
-
-async def fetch_answer(service: ASGIApp, path: str, query: str, accept: bytes) -> tuple[int, bytes]:
-    """Return status and body of a GET that an ASGI application answers."""
-    scope = {
-        "type": "http",
-        "asgi": {"version": "3.0"},
-        "http_version": "1.1",
-        "method": "GET",
-        "scheme": "http",
-        "path": unquote(path),
-        "raw_path": path.encode(),
-        "query_string": query.encode(),
-        "root_path": "",
-        "headers": [(b"host", b"localhost"), (b"accept", accept)],
-        "client": ("127.0.0.1", 0),
-        "server": ("localhost", 80),
-    }
-    status, body = 500, bytearray()
-
-    async def receive() -> Mapping[str, Any]:
-        return {"type": "http.request", "body": b"", "more_body": False}
-
-    async def send(message: Mapping[str, Any]) -> None:
-        nonlocal status
-        if message["type"] == "http.response.start":
-            status = message["status"]
-        else:
-            body.extend(message.get("body", b""))
-
-    await service(scope, receive, send)  # type: ignore[arg-type]  # ASGI's messages are mappings
-    return status, bytes(body)
 
 
 def _why(body: bytes) -> str:
