@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 from cosmic_ray.work_db import WorkDB, use_db
@@ -23,6 +24,29 @@ CONFIG = Path(__file__).with_name("cosmic-ray.toml")
 FLOORS = ("files", "survey_data", "registry", "algorithms", "calibrate", "benchmark", "api")
 #: They compare digests of the code, or what it draws, with what is committed: red at any change.
 _AT_ANY_CHANGE = ("test_leaderboard_published.py", "test_documentation.py", "test_pictures.py")
+#: Tests that reach what discovery finds, what a command names and what a page shows, by floor.
+_MEASURING = (
+    "benchmark/running/test_published_cells.py",
+    "benchmark/claims/test_trials_measured.py",
+)
+_REACHING = {
+    ("algorithms/",): ("algorithms/test_common_suite.py", *_MEASURING),
+    ("benchmark/simulator/", "benchmark/datasets/"): (
+        "benchmark/datasets/test_published_heads.py",
+        *_MEASURING,
+    ),
+    ("benchmark/",): (
+        "benchmark/test_experiment_plots.py",
+        "benchmark/claims/test_trials_measured.py",
+        "benchmark/sweeps",
+        "benchmark/leaderboard",
+    ),
+    ("api/",): tuple(f"api/{face}" for face in ("pages", "figures", "service", "http", "cli")),
+}
+#: Test files by way of users, which are many of a module that much is built on.
+_MANY = 40
+#: What pytest exits with where it was given no test that is not slow.
+_ALL_SLOW = 5
 #: Type hints and what is declared alone; the next mutant of the module is taken.
 _WITHOUT_EFFECT = re.compile(r"RemoveDecorator|BinaryOperator_BitOr")
 
@@ -66,50 +90,69 @@ def draw(directory: Path, number: int, seed: int) -> None:
     sys.stdout.write(f"{len(kept)} mutants, seed {seed}\n")
 
 
-def tests_of(module: str) -> list[Path]:
-    """Return the test files that import a module, then those of its folder's tests.
+def tests_of(module: str) -> tuple[list[Path], list[Path]]:
+    """Return the test files that are near a module, and further ones, the nearest first.
 
-    Of a module that no test imports, such as a kernel, those that import one that does.
+    Near are those that import it, and those of its folder and of the folders above. Further are
+    those that import what uses it, step by step up to `_MANY`, and those of `_REACHING`.
     """
-    every = [p for p in sorted((ROOT / "tests").rglob("test_*.py")) if p.name not in _AT_ANY_CHANGE]
-    found = _importing(module, every)
-    if not found:
-        for user in _importing(
-            module, [p for floor in FLOORS for p in (ROOT / floor).rglob("*.py")]
-        ):
-            found += _importing(user.relative_to(ROOT).as_posix(), every)
-    folder = Path("tests", module).parent
-    while not (ROOT / folder).is_dir():
-        folder = folder.parent
-    beside = [path for path in every if path.is_relative_to(ROOT / folder)]
-    # which import what they discover
-    if module.startswith("algorithms/"):
-        beside.append(ROOT / "tests/algorithms/test_common_suite.py")
-        beside.append(ROOT / "tests/benchmark/running/test_published_cells.py")
-    if module.startswith(("benchmark/simulator/", "benchmark/datasets/")):
-        beside.append(ROOT / "tests/benchmark/datasets/test_published_heads.py")
-    return list(dict.fromkeys(found + beside))
+    every = [
+        path
+        for path in sorted((ROOT / "tests").rglob("test_*.py"))
+        if path.name not in _AT_ANY_CHANGE and path.parent.name != "browser"
+    ]
+    sources = [path for floor in FLOORS for path in sorted((ROOT / floor).rglob("*.py"))]
+    near = _importing(module, every)
+    for folder in Path("tests", module).parents[:-2]:  # down to that of the floor
+        near += [path for path in every if path.parent == ROOT / folder]
+    further: list[Path] = []
+    users, known = [module], {module}
+    while users and len(set(further)) < _MANY:
+        using = dict.fromkeys(p for user in users for p in _importing(user, sources))
+        users = [u for p in using if (u := p.relative_to(ROOT).as_posix()) not in known]
+        known.update(users)
+        further += [path for user in users for path in _importing(user, every)]
+    further = list(dict.fromkeys(further))[:_MANY]
+    for floors, places in _REACHING.items():
+        if module.startswith(floors):
+            reaching = [ROOT / "tests" / place for place in places]
+            further += [p for place in reaching for p in every if p.is_relative_to(place)]
+    near = list(dict.fromkeys(near))
+    return near, [path for path in dict.fromkeys(further) if path not in near]
 
 
 def _importing(module: str, files: list[Path]) -> list[Path]:
-    package, _, name = module.removesuffix(".py").replace("/", ".").rpartition(".")
+    dotted = module.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    package, _, name = dotted.rpartition(".")
     imports = re.compile(
-        rf"^\s*(?:from {package}\.{name} import|import {package}\.{name}\b"
-        rf"|from {package} import .*\b{name}\b)",
+        rf"^\s*(?:from {dotted} import|import {dotted}\b"
+        rf"|from {package} import (?:\([^)]*|.*)\b{name}\b)",
         re.MULTILINE,
     )
-    return [path for path in files if imports.search(path.read_text("utf-8"))]
+    return [path for path in files if name in (text := _text(path)) and imports.search(text)]
+
+
+@cache
+def _text(path: Path) -> str:
+    return path.read_text("utf-8")
 
 
 def test() -> int:
-    """Run the tests of what differs from git; the exit status is that of pytest."""
+    """Run the tests of what differs from git; the exit status is that of pytest.
+
+    The further ones are run where the near ones notice nothing.
+    """
     command = ["git", "diff", "--name-only", "--", *FLOORS]
     changed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    files = [path for module in changed.stdout.split() for path in tests_of(module)]
-    if not files:
-        return 0
     pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-    return subprocess.run([*pytest, "-m", "not slow", *files], cwd=ROOT, check=False).returncode
+    for files in zip(*(tests_of(module) for module in changed.stdout.split()), strict=True):
+        chosen = list(dict.fromkeys(path for of_module in files for path in of_module))
+        if not chosen:
+            continue
+        done = subprocess.run([*pytest, "-m", "not slow", *chosen], cwd=ROOT, check=False)
+        if done.returncode not in {0, _ALL_SLOW}:
+            return done.returncode
+    return 0
 
 
 def main() -> int:
