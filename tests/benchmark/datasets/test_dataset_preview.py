@@ -17,8 +17,17 @@ def read(png):
     return cv2.imdecode(np.frombuffer(png, dtype=np.uint8), cv2.IMREAD_COLOR)[:, :, ::-1]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", datasets.names())
+#: Of which a picture takes a moment: profiles, a sweep, bars.
+QUICK = {"ccd-v-slit", "psd-single-aperture", "pva-maskless-pyramid", "qpd-single-aperture"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
+        for name in datasets.names()
+    ],
+)
 def test_every_data_set_has_a_picture_with_much_on_it(name):
     png = preview_png(datasets.get(name))
     assert png.startswith(b"\x89PNG")
