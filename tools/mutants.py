@@ -43,6 +43,8 @@ _REACHING = {
     ),
     ("api/",): tuple(f"api/{face}" for face in ("pages", "figures", "service", "http", "cli")),
 }
+#: Further tests never: their servers and children of the lowest priority wait for a busy machine.
+_WAITING = re.compile(r"/api/server/|/test_http_(calibrations|hanging_up|uploads)\.py$")
 #: Test files by way of users, which are many of a module that much is built on.
 _MANY = 40
 #: What pytest exits with where it was given no test that is not slow.
@@ -118,7 +120,8 @@ def tests_of(module: str) -> tuple[list[Path], list[Path]]:
             reaching = [ROOT / "tests" / place for place in places]
             further += [p for place in reaching for p in every if p.is_relative_to(place)]
     near = list(dict.fromkeys(near))
-    return near, [path for path in dict.fromkeys(further) if path not in near]
+    left = [path for path in dict.fromkeys(further) if not _WAITING.search(path.as_posix())]
+    return near, [path for path in left if path not in near]
 
 
 def _importing(module: str, files: list[Path]) -> list[Path]:
