@@ -54,6 +54,10 @@ def test_flows_and_the_evidence_map_count_later_studies_only_where_asked(
     assert not keys & set(later())
 
 
+def test_the_page_of_figures_counts_the_studies_that_they_may_add(atlas: Client) -> None:
+    assert f"can include {len(later())} studies that the survey" in atlas.get("/figures").text
+
+
 def test_a_recommendation_names_later_studies_only_where_asked(atlas: Client) -> None:
     def keys(edition: str) -> set[str]:
         document = atlas.get(f"/v1/recommendations/flow?edition={edition}").json()

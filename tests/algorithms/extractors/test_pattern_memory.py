@@ -84,3 +84,23 @@ def test_another_array_at_the_same_address_is_another():
             found.append(found_once(array, "settings", lambda value=number: value))
             del array
     assert found == list(range(50))
+
+
+def test_the_batch_that_nobody_asked_for_longest_is_forgotten_first():
+    batches = [np.full((4, 10), number) for number in range(5)]
+    for batch in batches:
+        batch.flags.writeable = False
+    searches = []
+
+    def asked(number):
+        return found_once(batches[number], "settings", lambda: searches.append(number) or number)
+
+    with shared_patterns():
+        for number in (0, 1, 2, 3, 0, 4):  # one more than are kept
+            asked(number)
+        assert searches == [0, 1, 2, 3, 4]
+        for number in (4, 0, 3, 2):
+            asked(number)
+        assert searches == [0, 1, 2, 3, 4]
+        asked(1)
+    assert searches == [0, 1, 2, 3, 4, 1]

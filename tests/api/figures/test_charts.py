@@ -17,6 +17,7 @@ from api.figures.catalogue import MATRIX
 from api.figures.figure import Figure
 from api.figures.lines import Line, line_figure
 from api.figures.picture import picture
+from api.pages import compare
 from tests.api.conftest import Client
 
 #: One page of every kind that has charts.
@@ -50,6 +51,18 @@ def test_an_axis_is_logarithmic_where_every_value_is_positive() -> None:
         found = line_figure("a", "A", [Line("a", [(1.0, low), (10.0, 2.0)])], "x", "y")
         assert found.plotly["layout"]["yaxis"].get("type") == kind
         assert found.plotly["layout"]["xaxis"].get("type") is None
+
+
+def test_errors_by_angle_are_drawn_in_the_middle_of_their_rings() -> None:
+    rings = [
+        {"inner_deg": 0.0, "outer_deg": 10.0, "rms_deg": 0.1},
+        {"inner_deg": 10.0, "outer_deg": 30.0, "rms_deg": None},
+        {"inner_deg": 30.0, "outer_deg": 60.0, "rms_deg": 0.4},
+    ]
+    found = compare._chart([{"rings": rings}, {"rings": []}], ["first", "without"])
+    (line,) = found.plotly["data"]
+    assert (line["name"], list(line["x"])) == ("first", [5.0, 20.0, 45.0])
+    assert list(line["y"]) == [0.1, None, 0.4]
 
 
 def test_no_point_beats_one_of_the_front_and_one_beats_every_other() -> None:

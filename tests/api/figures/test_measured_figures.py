@@ -94,7 +94,8 @@ def test_the_gap_is_ordered_by_a_level(atlas: Any, level: str) -> None:
 
 @pytest.mark.parametrize("across", ["field", "height", "poses", "latency", "mass"])
 def test_marks_of_the_trade_off_are_its_rows(atlas: Any, across: str) -> None:
-    items = document(atlas, f"{TRADE_OFF}?across={across}")["items"]
+    found = document(atlas, f"{TRADE_OFF}?across={across}")
+    items = found["items"]
     column, sign = AXES[across][0], -1 if across == "field" else 1
     traces = drawn(atlas, f"{TRADE_OFF}?across={across}")
     points = [mark for trace in traces for mark in zip(trace.x, trace.y, strict=True)]
@@ -103,6 +104,10 @@ def test_marks_of_the_trade_off_are_its_rows(atlas: Any, across: str) -> None:
     for row, (cost, error) in zip(items, worth, strict=True):
         beaten = any(c <= cost and e <= error and (c, e) != (cost, error) for c, e in worth)
         assert (row["status"] == "frontier") == (not beaten)
+    ends = sorted((r["error_deg"], r["name"]) for r in items if r["status"] == "frontier")
+    said = " ".join(found["text"])
+    assert f"frontier runs from {ends[0][1]} (" in said
+    assert f" to {ends[-1][1]} (" in said
 
 
 def test_errors_of_the_trade_off_are_those_of_the_leaderboard(atlas: Any) -> None:

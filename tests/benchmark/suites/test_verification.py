@@ -60,12 +60,17 @@ def test_a_record_of_this_code_is_alike_to_the_last_digit(record: Store) -> None
     assert contents(record) == before
 
 
-@pytest.mark.parametrize("factor", [1.01, 0.5])
-def test_a_number_that_does_not_hold_is_named_with_its_cell(record: Store, factor: float) -> None:
-    cell = changed(record, "p95_deg", factor)
+@pytest.mark.parametrize(
+    ("column", "factor"),
+    [("p95_deg", 1.01), ("p95_deg", 0.5), ("availability", 0.5)],  # of shares, many samples
+)
+def test_a_number_that_does_not_hold_is_named_with_its_cell(
+    record: Store, column: str, factor: float
+) -> None:
+    cell = changed(record, column, factor)
     found = verified(record)
     (difference,) = found.differences
-    assert difference.cell == f"{cell}/p95_deg"
+    assert difference.cell == f"{cell}/{column}"
     assert difference.file == f"scores/{cell.dataset}.csv"
     assert found.alike == 15
     others = [other for other in record.scores() if other != cell]

@@ -90,3 +90,17 @@ def test_a_gradient_rises_by_a_tenth_of_the_peak_across_the_frame() -> None:
         slopes.append(63.0 * np.array(slope))
     assert np.linalg.norm(slopes, axis=1) == pytest.approx(0.1 * 2000.0, rel=0.05)
     assert np.ptp(np.arctan2(*np.array(slopes).T)) > 1.0, "in any direction"
+
+
+@pytest.mark.parametrize(("series", "point"), [("disc", "4"), ("grid", "3")])
+def test_light_is_around_its_truth_and_that_within_the_range_of_the_middle(
+    series: str, point: str
+) -> None:
+    setting = setting_of(series, "size", point)
+    sample, light = drawn(series, "size", point)
+    middle = (light.shape[1] - 1) / 2.0
+    assert np.abs(sample.truth - middle).max() <= setting.range_px
+    grid = np.stack(np.meshgrid(*(np.arange(light.shape[1]),) * 2))  # x, y
+    bright = np.where(light > 0.1, light, 0.0)
+    found = np.einsum("nyx,cyx->nc", bright, grid) / bright.sum(axis=(1, 2))[:, None]
+    assert found == pytest.approx(sample.truth, abs=0.2)
