@@ -116,6 +116,13 @@ def test_a_count_that_does_not_hold_is_reported_at_the_end_of_the_table(copy: An
     assert located(copy.found("counts.csv"), 3, "column")
 
 
+def test_a_value_that_is_of_another_attribute_is_the_fault_of_the_value(copy: Any) -> None:
+    """Where a pair refers to another table, its last column is named."""
+    assert copy.rows("roles")[1][:2] == ["Antonello2018", "model"]
+    copy.set("roles", 2, "value", "CMOS")  # a detector
+    assert {p.column for p in copy.found("roles.csv") if p.row == 2} == {"value"}
+
+
 def test_a_number_is_a_number_in_range(copy: Any) -> None:
     texts = ["0", "200", "-1", "nan", "inf", "0,5", "1e99", "0.5 deg", "\u0663"]
     rows = copy.rows("attributes")
