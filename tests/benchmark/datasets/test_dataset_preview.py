@@ -5,10 +5,15 @@ from __future__ import annotations
 import cv2
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
+from algorithms.discovery import discover_extractors
 from api.previews import published_preview
 from benchmark import datasets
+from benchmark.datasets import preview_overlay
 from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
+from benchmark.datasets.preview_overlay import overlay_png
+from benchmark.datasets.preview_sheet import LINES
 
 PAPER = (255, 255, 255)
 
@@ -62,3 +67,32 @@ def test_a_spot_is_drawn_where_it_is():
     bright = tile > 0.8 * tile.max()
     at_y, at_x = (float(np.mean(k)) for k in np.nonzero(bright))
     assert (at_x / 3, at_y / 3) == pytest.approx((x + 1 / 3, y + 1 / 3), abs=0.7)
+
+
+def test_an_overlay_has_its_cross_where_the_spot_is_found():
+    """Four frames cut to 116 px: a tile of 232 px shows each pixel as four."""
+    preset = datasets.get("cmos-single-aperture-pinhole")
+    samples = preset.generate("nominal", "test", 4)
+    reader = discover_extractors()["bctm"]
+    found = reader.for_sensor(preset.geometry).extract(samples.observations)
+    image = read(overlay_png(preset, reader, ["nominal"])).astype(int)
+    assert image.shape[:2] == (84 + 232 + 52, 2 * 24 + 4 * 232 + 3 * 14)
+    high, wide = samples.observations.shape[1:]
+    assert high == wide
+    orange = np.abs(image - np.array(to_rgb(LINES[1])) * 255).max(axis=2) < 40
+    for n, (x, y) in enumerate(found):
+        corner = 24 + n * (232 + 14)
+        rows, columns = np.nonzero(orange[84 : 84 + 232, corner : corner + 232])
+        left, first = (np.clip(round(at) - 58, 0, max(wide - 116, 0)) for at in (x, y))
+        scale = 232 / min(116, wide)
+        middle = scale * (np.array([x - left, y - first]) + 0.5)
+        assert np.mean([columns, rows], axis=1) == pytest.approx(middle, abs=3.0)
+
+
+def test_an_overlay_says_where_and_how_far_off():
+    there, off, nowhere = np.array([12.0, 7.0]), np.array([15.0, 3.0]), np.full(2, np.nan)
+    assert preview_overlay._apart(off, there) == "(15.0, 3.0), 5.00 px off"
+    assert preview_overlay._apart(off, nowhere) == "(15.0, 3.0)"
+    assert preview_overlay._apart(nowhere, there) == "not found"
+    with pytest.raises(preview_overlay.OverlayError, match="ccd-slit has profiles"):
+        overlay_png(datasets.get("ccd-slit"), discover_extractors()["bctm"])

@@ -15,10 +15,12 @@ from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.sensors.frames import FrameSensor
 from benchmark.sweeps.albedo_influence import (
+    Influence,
     Patches,
     aperture_earthlight,
     influence,
     lit_patches,
+    maximum_currents,
     on_aperture,
     on_balance,
     on_cube,
@@ -103,6 +105,40 @@ def test_earthlight_is_what_each_pixel_sees_through_the_hole() -> None:
         drawn.append(flux[row, column])
     assert max(traced) > 5e-4
     assert drawn == pytest.approx(traced, abs=0.03 * max(traced))
+
+
+def test_an_influence_is_of_what_moved_and_has_a_bound() -> None:
+    moved, bound = np.array([3.0, 4.0, np.nan, 0.2]), np.array([1.0, 2.0, 1.0, np.inf])
+    found = Influence(moved, bound)
+    assert found.worst_deg == 4.0
+    assert found.rms_deg == pytest.approx(np.sqrt((9.0 + 16.0 + 0.04) / 3.0))
+    assert found.rms_over_bound == pytest.approx(np.sqrt(25.0 / 5.0))
+    assert Influence(moved, 20.0 * bound).share_above_a_tenth == 0.5  # 3 of 20, 4 of 40
+
+
+def test_the_larger_current_of_each_pair_of_faces_is_a_component_of_the_sun() -> None:
+    sun = np.array([[0.6, 0.0, 0.8], [-0.48, 0.64, -0.6]])
+    currents = np.stack([np.maximum(sign * sun, 0.0) for sign in (1.0, -1.0)], axis=2)
+    np.testing.assert_allclose(maximum_currents(7.0 * currents.reshape(2, 6)), sun, atol=1e-15)
+
+
+def test_a_few_samples_are_moved_as_many_are() -> None:
+    """By some degrees on a cube, less behind an opening, not above a third of a peak."""
+    cube, balance = on_cube(samples=40), influence("qpd-single-aperture", 40)
+    assert len(cube.moved_deg) == len(balance.moved_deg) == 40
+    assert 2.0 < cube.rms_deg < 6.0
+    assert cube.rms_over_bound > 10
+    assert 0.2 < balance.rms_deg < 1.5
+    assert 4.0 < balance.rms_over_bound < 100.0
+    assert on_aperture(samples=3, extractor=ThresholdedCentroid(threshold=0.3)).worst_deg == 0.0
+    plain = on_aperture(samples=3, extractor=BasicCentroid())
+    assert 0.0 < plain.worst_deg < 0.01
+    with pytest.raises(TypeError, match="pd-code-dial has 18 currents, no balance"):
+        on_balance("pd-code-dial")
+    with pytest.raises(TypeError, match="pd-orbit has no condition 'albedo'"):
+        on_balance("pd-orbit")
+    with pytest.raises(TypeError, match="ccd-slit has no pixel array behind one aperture"):
+        influence("ccd-slit")
 
 
 @pytest.mark.slow
