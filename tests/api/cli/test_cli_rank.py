@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
 import pytest
 from typer.testing import CliRunner
@@ -53,3 +54,17 @@ def test_an_algorithm_is_shown_on_the_board_of_a_data_set(
     rows = json.loads(answer.stdout)["items"]
     assert {row["extractor"] for row in rows if row["new"]} == {NAME}
     assert {row["dataset"] for row in rows} == {DATASET}
+
+
+def test_a_check_that_fails_is_told_in_its_own_words() -> None:
+    suite = """<testsuite>
+      <testcase name="test_extractor[bctm-check_rows_are_alone]"><failure
+        message="AssertionError: row 3
+        differs"/></testcase>
+      <testcase name="test_every_one_has_a_label"><error message="KeyError: 'BCTM'"/></testcase>
+      <testcase name="test_model[lut-check_nothing]"/>
+    </testsuite>"""
+    assert list(contract._failures(list(ET.fromstring(suite)))) == [
+        "rows are alone: row 3 differs",
+        "every one has a label: 'BCTM'",
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ from typer.testing import CliRunner
 
 from api.cli import measuring
 from api.cli.command_line import app
+from api.cli.commands import plan
+from benchmark.contract import Cell
 from benchmark.leaderboard.scope import first
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import Store
@@ -67,3 +70,29 @@ def test_a_record_that_holds_is_verified_and_nothing_is_written(
     assert drawn["seed"] == 7
     assert {path: path.read_bytes() for path in published.directory.rglob("*.csv")} == before
     assert not small.exists()
+
+
+def test_a_plan_counts_what_is_new_by_data_set_and_stage(small: Path) -> None:
+    cells = list(first(planning.every_part()))
+    shown = sunatlas("plan", "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    found = json.loads(shown.stdout)
+    assert found["planned"] == len(found["missing"]) == len(cells) > 1
+    assert {row["why"] for row in found["missing"]} == {"new"}
+    assert found["stages"]["predictions"] == len(cells)
+    assert f"{len(cells)} of {len(cells)} cells to be measured" in shown.stderr
+    table = sunatlas("plan").stdout
+    for name in {cell.dataset for cell in cells}:
+        count = sum(cell.dataset == name for cell in cells)
+        assert re.search(rf"new\s+{name}\s+{count}\b", table), table
+
+
+def test_reasons_to_measure_are_named_with_what_they_are_of() -> None:
+    cell = Cell("set", "nominal", "centroid", "table")
+    for reasons, said in (
+        (("new",), "new"),
+        ((planning.FAILED,), "failed before"),
+        (("dataset", "model"), "data set, model table changed"),
+        (("extractor", "metrics"), "extractor centroid, metrics changed"),
+    ):
+        assert plan._why(cell, reasons) == said
