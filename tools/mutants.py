@@ -23,7 +23,13 @@ ROOT = Path(__file__).resolve().parents[1]
 CONFIG = Path(__file__).with_name("cosmic-ray.toml")
 FLOORS = ("files", "survey_data", "registry", "algorithms", "calibrate", "benchmark", "api")
 #: They compare digests of the code, or what it draws, with what is committed: red at any change.
-_AT_ANY_CHANGE = ("test_leaderboard_published.py", "test_documentation.py", "test_pictures.py")
+_AT_ANY_CHANGE = (
+    "api/docs/test_documentation.py",
+    "api/test_pictures.py",
+    "benchmark/as_sold/test_measure.py::test_the_published_rows_are_of_the_code",
+    "benchmark/leaderboard/test_leaderboard_published.py::test_the_record_is_of_the_code_as_it_is",
+    "benchmark/leaderboard/test_study_record.py::test_the_record_is_as_its_commands_wrote_it",
+)
 #: Tests that reach what discovery finds, what a command names and what a page shows, by floor.
 _MEASURING = (
     "benchmark/running/test_published_cells.py",
@@ -43,8 +49,10 @@ _REACHING = {
     ),
     ("api/",): tuple(f"api/{face}" for face in ("pages", "figures", "service", "http", "cli")),
 }
-#: Further tests never: their servers and children of the lowest priority wait for a busy machine.
-_WAITING = re.compile(r"/api/server/|/test_http_(calibrations|hanging_up|uploads)\.py$")
+#: Of what they import alone: they wait for servers, and for children of the lowest priority.
+_WAITING = re.compile(
+    r"/api/server/|/test_(http_calibrations|http_hanging_up|http_uploads|upload_callers)\.py$"
+)
 #: Test files by way of users, which are many of a module that much is built on.
 _MANY = 40
 #: What pytest exits with where it was given no test that is not slow.
@@ -101,10 +109,11 @@ def tests_of(module: str) -> tuple[list[Path], list[Path]]:
     every = [
         path
         for path in sorted((ROOT / "tests").rglob("test_*.py"))
-        if path.name not in _AT_ANY_CHANGE and path.parent.name != "browser"
+        if path.parent.name != "browser"
     ]
     sources = [path for floor in FLOORS for path in sorted((ROOT / floor).rglob("*.py"))]
     near = _importing(module, every)
+    every = [path for path in every if not _WAITING.search(path.as_posix())]
     for folder in Path("tests", module).parents[:-2]:  # down to that of the floor
         near += [path for path in every if path.parent == ROOT / folder]
     further: list[Path] = []
@@ -120,8 +129,7 @@ def tests_of(module: str) -> tuple[list[Path], list[Path]]:
             reaching = [ROOT / "tests" / place for place in places]
             further += [p for place in reaching for p in every if p.is_relative_to(place)]
     near = list(dict.fromkeys(near))
-    left = [path for path in dict.fromkeys(further) if not _WAITING.search(path.as_posix())]
-    return near, [path for path in left if path not in near]
+    return near, [path for path in dict.fromkeys(further) if path not in near]
 
 
 def _importing(module: str, files: list[Path]) -> list[Path]:
@@ -147,12 +155,23 @@ def test() -> int:
     """
     command = ["git", "diff", "--name-only", "--", *FLOORS]
     changed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
+    pytest = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-x",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-m",
+        "not slow",
+    ]
+    pytest += [f"--deselect=tests/{place}" for place in _AT_ANY_CHANGE]
     for files in zip(*(tests_of(module) for module in changed.stdout.split()), strict=True):
         chosen = list(dict.fromkeys(path for of_module in files for path in of_module))
         if not chosen:
             continue
-        done = subprocess.run([*pytest, "-m", "not slow", *chosen], cwd=ROOT, check=False)
+        done = subprocess.run([*pytest, *chosen], cwd=ROOT, check=False)
         if done.returncode not in {0, _ALL_SLOW}:
             return done.returncode
     return 0
