@@ -8,11 +8,20 @@ from benchmark.contract import ON_BENCH
 from benchmark.leaderboard import scope, study_record
 from benchmark.plan.parts import every_part, installed_parts, split_parts, study_parts
 from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
+from benchmark.running import pinning
 from benchmark.suites.selection import suite
 
 
 def test_the_record_is_as_its_commands_wrote_it_and_of_the_code_as_it_is() -> None:
     assert study_record.check(stored_only=True) == []
+
+
+@pytest.mark.parametrize("name", study_parts().presets)
+def test_the_first_samples_of_a_study_s_sensor_are_those_that_were_published(name: str) -> None:
+    pins = {at: pin for at, pin in Store(PUBLISHED_STUDIES).pins().items() if at[0] == name}
+    preset = study_parts().presets[name]
+    assert {condition for _, condition, _ in pins} == set(preset.conditions)
+    assert pinning.changed_heads(pins, [preset]) == {}
 
 
 def test_only_pipelines_of_the_studies_are_scored() -> None:
