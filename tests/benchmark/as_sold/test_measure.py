@@ -1,6 +1,7 @@
 """Errors of simulated sensors at each depth of calibration, on each bench, in each statistic."""
 
 import csv
+import dataclasses
 import math
 from pathlib import Path
 
@@ -8,12 +9,15 @@ import numpy as np
 import pytest
 
 import survey_data
-from algorithms.discovery import discover_chains
+from algorithms.discovery import discover_chains, discover_extractors
 from benchmark import datasets
+from benchmark.as_sold import measure as sold
 from benchmark.as_sold.mapping import as_sold
 from benchmark.as_sold.measure import (
     _TURNTABLES,
     STATISTICS,
+    WITHOUT_EARTH,
+    AsSoldTask,
     as_drawn,
     best_pipeline,
     has_constants,
@@ -21,6 +25,8 @@ from benchmark.as_sold.measure import (
     narrowed,
 )
 from benchmark.as_sold.record import beside_stated, tally
+from benchmark.datasets.corrected import corrections
+from benchmark.datasets.features import features_of
 from benchmark.datasets.units import tolerances
 from benchmark.experiments.as_sold import BuiltAsSold
 from benchmark.results.store import PUBLISHED
@@ -100,6 +106,31 @@ def test_a_narrower_field_narrows_calibration_and_test():
         largest = np.degrees(np.arctan(np.abs(sun[:, :2] / sun[:, 2:])).max())
         assert 4.9 < largest <= 5.0 + 1e-9
     assert preset.geometry.half_fov_deg == 5.0
+
+
+def test_a_pipeline_of_true_directions_errs_as_if_fitted_by_itself(monkeypatch):
+    """One unit, at two levels of noise, by constants alone; its own directions by hand."""
+    monkeypatch.setattr(sold, "UNITS", 1)
+    preset = narrowed(datasets.get("qpd-single-aperture"), 20.0)
+    one = dataclasses.replace(as_sold()["C18"], statistic="max", level="ground", depth="constants")
+    known = discover_chains()
+    pair = (discover_extractors()["voltage-balance"], known["qpd"])
+    levels = {"ground": "nominal", "flight": "high-noise", WITHOUT_EARTH: "high-noise"}
+    ((name, row),) = measure(AsSoldTask(preset, levels, (one,), pair, None, all_observable=True))
+    assert (name, row["constants"], row["table"]) == ("C18", "voltage-balance + qpd", "")
+    assert row["table_true_deg"] is None
+    assert row["other_level_deg"] == row["without_earth_deg"]
+    assert row["constants_true_deg"] < row["uncalibrated_deg"]
+    unit = preset.for_unit(1)
+    by = corrections(unit, "nominal")
+    splits = {split: unit.generate("nominal", split) for split in ("calibration", "test")}
+    reader = pair[0].for_sensor(unit.geometry)
+    told = {split: features_of(reader, part, by[split]) for split, part in splits.items()}
+    model = pair[1].for_sensor(unit.geometry, reader.about.kind)
+    model.fit(told["calibration"], splits["calibration"].truth)
+    cosine = np.sum(model.predict(told["test"]) * splits["test"].sun, axis=1)
+    largest = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)).max())
+    assert row["constants_true_deg"] == pytest.approx(largest, rel=1e-4)
 
 
 @pytest.mark.slow

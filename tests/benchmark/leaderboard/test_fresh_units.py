@@ -69,3 +69,52 @@ def test_leaders_are_scored_on_units_that_no_board_has(parts: Parts) -> None:
     assert found.first <= found.pipelines
     assert found.over >= 1.0
     assert found.holds or found.over > 1.0
+
+
+@pytest.mark.parametrize(("times", "over"), [(1.0, 1.0), (2.0, 2.0 / 1.1)])
+def test_a_leader_holds_on_fresh_units_where_nobody_errs_less(
+    parts: Parts, monkeypatch: pytest.MonkeyPatch, times: float, over: float
+) -> None:
+    """Made-up errors, the same spread over units: the next ones are a tenth more than the first."""
+    scores = Store(PUBLISHED).scores()
+    (leader, *others), behind = first_groups(scores, parts)[NAME]
+    level = {leader: times} | {one: 1.1 + 0.1 * n for n, one in enumerate([*others, *behind])}
+
+    def errors(wanted: list[Cell], *_told: object) -> dict[Cell, dict[str, float]]:
+        return {
+            cell: {"rms_all_answers_deg": level[replace(cell, unit=0)] * (1.0 + 0.1 * cell.unit)}
+            for cell in wanted
+        }
+
+    monkeypatch.setattr(fresh_units, "_measured", errors)
+    (found,) = fresh_units.score_fresh_units(Store(PUBLISHED), parts=parts)
+    assert found.over == pytest.approx(over)
+    assert found.group_over == pytest.approx(1.0 if others else over)
+    assert found.holds == (times == 1.0)
+    assert (found.leader, found.first) == (leader, 1 + len(others))
+    assert found.pipelines >= len(level)
+
+
+def test_the_command_counts_who_holds_and_fails_where_few_do(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cell = Cell(NAME, "nominal", "bctm", "lut")
+    good = fresh_units.FreshUnitResult(NAME, 40, 3, cell, True, 1.0, 1.0)
+    near = fresh_units.FreshUnitResult(NAME, 40, 4, cell, False, 1.3, 1.1)
+    far = fresh_units.FreshUnitResult(NAME, 40, 4, cell, False, 1.3, 1.2)
+    for found, options, code in (
+        ([good] * 19 + [near], [], 0),
+        ([good] * 18 + [near] * 2, [], 1),
+        ([good] * 18 + [near] * 2, ["--flight"], 0),
+        ([good] * 17 + [far] * 3, ["--flight", "--seed", "5"], 1),
+    ):
+        monkeypatch.setattr(fresh_units, "score_fresh_units", lambda *_, of=found, **__: of)
+        assert fresh_units.main(options) == code
+        *lines, last = capsys.readouterr().out.splitlines()
+        assert len(lines) == len(found)
+        assert "3 of 40 in the first group; bctm + lut holds on fresh units, 1.000 of" in lines[0]
+        held = sum(one.holds for one in found)
+        assert last.startswith(f"{held} of 20 leaders are in the first group on ")
+        assert f"{20 - found.count(far)} boards the first group is within 10 %" in last
+        assert f"on {held} it has fewer than 10 %" in last
+        assert ("drawn by 5" in last) == ("--seed" in options)
