@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import replace
 
 import pytest
@@ -41,3 +42,21 @@ def test_the_first_trial_of_a_claim_measures_what_is_published(name: str) -> Non
                 assert numbers[rule.name][0] == pytest.approx(expected, rel=1e-3, nan_ok=True)
             elif rule.name in numbers:
                 assert numbers[rule.name][0] > 0.0
+
+
+#: Where an experiment's lines are planned: a constant of its module.
+PLACES = {
+    "C01": "INTERVALS_DEG", "C03": "HALF_FIELDS_DEG", "C07": "SHOWN", "C09": "PARTS",
+    "C10": "TIMES", "C11": "GAPS_MM", "C14": "FITTED", "C16": "SHARES", "C26": "REFLECTANCES",
+    "C30": "SHARES", "C31": "SLITS", "C34": "HEIGHTS_PX", "C35": "PLACES", "C39": "NUMBERS",
+    "C45": "MISSING", "C46": "SHARES", "C47": "SHARES", "C48": "NOISES", "C50": "SHARES",
+    "C52": "NOISES", "C53": "PITCHES", "C55": "SEPARATIONS",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_published_lines_are_at_the_places_that_are_planned(name: str) -> None:
+    """Of experiments whose trials take longer."""
+    module = inspect.getmodule(find_experiments()[name].trial)
+    first, *_ = read_outcomes()[name].lines.values()
+    assert tuple(getattr(module, PLACES[name])) == tuple(first.x)
