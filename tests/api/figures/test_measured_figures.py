@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import statistics
 from typing import Any
 
 import pytest
@@ -63,6 +65,28 @@ def test_the_gap_counts_what_comes_near_the_bound(atlas: Any) -> None:
     near = [row for row in rows if row["own_error_deg"] <= 2.0 * row["bound_deg"]]
     page = atlas.get("/figures/gap", accept="text/html").text
     assert f"within 2 times the bound for {len(near)} of {len(rows)}." in page
+
+
+def test_sentences_of_the_gap_count_its_rows(atlas: Any) -> None:
+    found = document(atlas, GAP)
+    rows, said = found["items"], " ".join(found["text"])
+    reported = [min(row["study_rms_deg"] + row["product_rms_deg"], default=None) for row in rows]
+    flown = [row["flight_error_deg"] for row in rows]
+    counts = (len(rows), *(sum(value is not None for value in of) for of in (reported, flown)))
+    assert said.startswith(
+        "Architectures: {}, of which {} have a reported accuracy and {} are flown".format(*counts)
+    )
+    both = [(r, f) for r, f in zip(reported, flown, strict=True) if r is not None and f is not None]
+    worse, better = sum(r > f for r, f in both), sum(r < f for r, f in both)
+    assert f"Of {len(both)} with both, for {worse} the best reported sensor errs more" in said
+    assert f"for {better} the report is the smaller" in said
+    times = [r["flight_error_deg"] / r["own_error_deg"] for r in rows if r["flight_error_deg"]]
+    ends = re.search(
+        r"in flight is ([\d.]+) to ([\d.]+) times the own error, median ([\d.]+)", said
+    )
+    assert ends is not None
+    wanted = (min(times), max(times), statistics.median(times))
+    assert [float(one.rstrip(".")) for one in ends.groups()] == pytest.approx(wanted, rel=0.01)
 
 
 def test_the_gap_says_what_the_answer_says(atlas: Any) -> None:
@@ -134,6 +158,23 @@ def test_power_and_mass_are_those_that_products_state(atlas: Any) -> None:
         assert rows[name]["error_deg"] == pytest.approx(stated[name].accuracy_rms_deg, rel=1e-3)
 
 
+def test_sentences_of_robustness_are_of_its_cells(atlas: Any) -> None:
+    found = document(atlas, ROBUSTNESS)
+    first = [row for row in found["items"] if row["condition"] == "nominal"]
+    near = sum(row["over_bound"] is not None and row["over_bound"] <= 2.0 for row in first)
+    names = {row["name"] for row in found["items"]}
+    assert (
+        f"nominal conditions {near} of {len(names)} extractors are within 2 times"
+        in (found["text"][0])
+    )
+    found = document(atlas, f"{ROBUSTNESS}?hazard=albedo")
+    worst = [row for row in found["items"] if row["condition"] == WORST]
+    known = [row for row in worst if row["over_bound"] is not None]
+    near = sum(row["over_bound"] <= 2.0 for row in known)
+    assert found["text"][-1].startswith(f"Of {len(worst)}, {near} are within 2 times the bound")
+    assert f": {known[0]['name']} (" in found["text"][-2]
+
+
 def test_cells_of_the_heat_map_are_the_rows(atlas: Any) -> None:
     asked = f"{ROBUSTNESS}?hazard=albedo&detector=CMOS"
     grey, shaded = drawn(atlas, asked)
@@ -194,6 +235,18 @@ def test_two_extractors_are_compared_on_every_board_that_has_both(atlas: Any) ->
     low, high = share_interval(every["wins"], every["wins"] + every["losses"])
     assert (every["share_low"], every["share_high"]) == pytest.approx((low, high), rel=1e-4)
     assert every["data_sets"] == first["data_sets"] == len({d["dataset"] for d in found["duels"]})
+    assert (every["first"], every["second"]) == ("mirror", "bctm")
+    boards = sum(every[name] for name in ("wins", "ties", "losses", "neither"))
+    share = 100.0 * every["wins"] / (every["wins"] + every["losses"])
+    better, counted = found["text"][:2]
+    assert counted.startswith(f"All conditions, {boards} boards of {every['data_sets']} data sets")
+    assert f"mirror has the smaller error on {every['wins']} ({share:.0f} % of" in counted
+    assert f"bctm on {every['losses']}; equal within 3 % on {every['ties']}; on" in counted
+    verdict = "neither is shown better"
+    low, high = every["ratio_low"] or 0.0, every["ratio_high"] or math.inf
+    if high < 1.0 or low > 1.0:
+        verdict = f"{'mirror' if high < 1.0 else 'bctm'} is better"
+    assert better.startswith(f"All conditions: {verdict}. ")
     _, points = drawn(atlas, f"{ROBUSTNESS}?compare=mirror&compare=bctm")
     known = [(d["ratio"], d["dataset"]) for d in found["duels"] if d["ratio"]]
     assert list(zip(points.x, points.y, strict=True)) == known
