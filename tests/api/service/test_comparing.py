@@ -111,3 +111,19 @@ def test_what_cannot_be_compared_is_refused(known, pipelines, condition, paramet
     with pytest.raises(InvalidValueError) as refused:
         compare_pipelines(known, DATASET, pipelines, condition)
     assert refused.value.parameter == parameter
+
+
+def test_contradictions_of_an_answer_have_the_errors_of_the_board(atlas, known):
+    """To five digits, and their ratio to three."""
+    found = atlas.get("/v1/recommendations?detector=CMOS&detector=QPD&mask=Single-Ap.").json()
+    assert found["contradictions"]
+    for one in found["contradictions"]:
+        own = {
+            f"{row['extractor']} + {row['model']}": row["own_error_deg"]
+            for row in known.measurements.board_rows(one["dataset"])
+            if row["condition"] == one["condition"]
+        }
+        for side in ("first", "other"):
+            assert one[f"{side}_own_error_deg"] == float(f"{own[one[side]]:.5g}")
+        assert one["ratio"] == float(f"{own[one['first']] / own[one['other']]:.3g}")
+        assert f"{one['ratio']:.3g} times smaller" in one["sentence"]
