@@ -114,6 +114,40 @@ def test_an_import_shows_the_mapping_and_the_cells_and_writes_nothing(copy, thei
     assert "Nothing written; --apply writes 1 cells." in table.stdout
 
 
+def test_a_bibliography_is_compared_and_its_studies_are_counted(tmp_path):
+    """One that is confirmed, one of another year, one of no study; nothing is written."""
+    before = (OURS / "studies.csv").read_bytes()
+    path = tmp_path / "refs.bib"
+    path.write_text(
+        "@article{Chang2008, title={Another title altogether}, year={2008}}\n"
+        "@article{Mafi2023, title={Of another year}, year={2021}}\n"
+        "@book{Knuth1984, title={No study}, year={1984}}\n"
+    )
+    shown = survey("import", path)
+    assert shown.exit_code == 0
+    said = " ".join(shown.stdout.split())
+    for words in (
+        "4 cells of studies that refs.bib says otherwise",
+        "confirmed and said otherwise: Chang2008; --replace KEY takes what the file says",
+        "Mafi2023: published in 2021 there; the year of the key stays",
+        "left aside: Knuth1984: no study has this key",
+        "127 studies are not in it: Abhilash2014,",
+        "Nothing written; --apply writes 2 cells and 1 identity.",
+    ):
+        assert words in said
+    assert said.count("the year of the key stays") == 1
+    rows = list(csv.DictReader(io.StringIO(survey("import", path, "--format", "csv").stdout)))
+    assert [(row["study"], row["column"], row["kind"], row["line"]) for row in rows] == [
+        ("Chang2008", "title", "conflict", "1"),
+        ("Mafi2023", "title", "new", "2"),
+        ("Mafi2023", "type", "new", "2"),
+        ("Mafi2023", "year", "kept", "2"),
+    ]
+    assert (OURS / "studies.csv").read_bytes() == before
+    for options, refused in ((["--map", "a=b"], path), (["--replace", "Mafi2023"], "table.csv")):
+        assert survey("import", refused, *options).exit_code == 2
+
+
 @pytest.mark.parametrize("key", ["Liebe2001", "Herman2025c"])
 def test_no_template_is_written_for_a_key_that_is_taken(key, tmp_path):
     shown = survey("add", "--init", key, tmp_path / "new.toml")
