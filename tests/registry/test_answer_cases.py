@@ -1,5 +1,6 @@
 """Limits, hazards and orders on invented studies and pipelines, small enough to be read."""
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping
 
@@ -7,6 +8,7 @@ import pytest
 from scores import STUDY, pipeline
 
 from registry.answer import Answer, RankedArchitecture
+from registry.calibration import _interval
 from registry.comparison import contradictions
 from registry.measured_pipelines import Measurements, Score
 from registry.recommendation import recommend
@@ -239,3 +241,12 @@ def test_compensations_are_stages_that_a_study_stands_for_without_a_model(
         ("OCM",): {"S0", "S2"},
         ("LUT",): {"S2"},
     }
+
+
+def test_an_interval_is_of_an_error_and_of_measured_units() -> None:
+    one = row(rms_deg=0.3, unit_own_error_deg=(0.3,) * 4)
+    judged = one.judge((), None)  # type: ignore[attr-defined]
+    low, high = _interval(one, judged) or (0.0, 0.0)  # type: ignore[arg-type]
+    assert low <= judged.error_deg <= high
+    assert _interval(None, judged) is None
+    assert _interval(one, dataclasses.replace(judged, error_deg=math.inf)) is None  # type: ignore[arg-type]

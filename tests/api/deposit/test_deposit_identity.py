@@ -4,6 +4,7 @@ import email.message
 
 import pytest
 
+from api.deposit.archives.archive import Metadata
 from api.metadata import identity as deposit_identity
 from api.metadata.identity import MissingFileError
 
@@ -47,3 +48,17 @@ def test_without_checkout_and_metadata_there_is_no_identity(elsewhere):
     elsewhere.setattr(deposit_identity, "_installed", lambda: None)
     with pytest.raises(MissingFileError, match="sun-sensor-atlas"):
         deposit_identity.version()
+
+
+def test_authors_of_a_record_are_their_names_and_orcids_alone():
+    who = [
+        {"name": "Sommer, Ada", "family_name": "Sommer", "given_name": "Ada", "identifiers": [
+            {"identifier": "0000 0001", "scheme": "isni"},
+            {"identifier": "0009-0000-0012-3455", "scheme": "orcid"},
+            {"identifier": "118-5", "scheme": "gnd"}, {"identifier": "x"},
+        ]},
+        {"name": "A team"},
+    ]  # fmt: skip
+    found = Metadata.model_validate({"creators": [{"person_or_org": one} for one in who]})
+    assert found.authors == ["Sommer, Ada, 0009-0000-0012-3455", "A team"]
+    assert Metadata().authors == []
