@@ -49,7 +49,7 @@ _REACHING = {
     ),
     ("api/",): tuple(f"api/{face}" for face in ("pages", "figures", "service", "http", "cli")),
 }
-#: Of what they import alone: they wait for servers, and for children of the lowest priority.
+#: Of what they import alone: they wait for servers, and for processes behind all others.
 _WAITING = re.compile(
     r"/api/server/|/test_(http_calibrations|http_hanging_up|http_uploads|upload_callers)\.py$"
 )
