@@ -16,6 +16,7 @@ from calibrate.report.errors import (
     Errors,
     by_axis,
     by_band,
+    by_temperature,
     fewest_for,
     field_of,
     level,
@@ -70,6 +71,21 @@ def test_bands_hold_every_pose_once_and_say_what_intervals_cover() -> None:
     assert rows[-1].coverage == pytest.approx(0.95, abs=0.03)
     assert rows[-1].rms_deg == pytest.approx(0.05 * np.sqrt(2.0), rel=0.1)
     assert rows[0].name == "0 to 10 deg"
+
+
+def test_errors_are_told_apart_by_fifths_of_the_temperature() -> None:
+    """Those of a fifth are its own tenths of a degree."""
+    fifth = np.arange(len(SUN)) * 5 // len(SUN)
+    size = np.radians(0.1 * (1.0 + fifth))[:, None] * towards(0)
+    warmth = 280.0 + 10.0 * fifth + np.linspace(0.0, 9.0, len(SUN))
+    rows = by_temperature(known(size, temperature_K=warmth))
+    assert [row.rms_deg for row in rows] == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5], rel=0.02)
+    assert sum(row.samples for row in rows) == len(SUN)
+    assert max(row.samples for row in rows) - min(row.samples for row in rows) <= 2
+    assert rows[0].name.startswith("280.0 to ")
+    assert rows[-1].name.endswith(f"{warmth[-1]:.1f} K")
+    assert by_temperature(known(size, temperature_K=np.full(len(SUN), 290.0))) == []
+    assert by_temperature(known(size)) == []
 
 
 def test_the_share_of_the_next_errors_below_a_level_is_what_it_says() -> None:
