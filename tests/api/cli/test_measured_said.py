@@ -151,9 +151,6 @@ def test_a_study_that_is_offered_is_shown_with_what_would_run(tmp_path: Path) ->
     for words in ("Study Doe2030", "A sun sensor that nobody built", "graph network (nearest)",
                   "Implementation here: ", "Nothing written; --apply adds Doe2030."):  # fmt: skip
         assert words in said
-    found = json.loads(sunatlas("survey", "add", path, "--format", "json").stdout)
-    assert (found["study"]["key"], found["written"]) == ("Doe2030", False)
-    assert f"pipelines: {len(found['pipelines'])}" in said
     path.write_text(STUDY.replace('value = "DNN"', 'value = "DNM"'))
     shown = sunatlas("survey", "add", path, "--format", "json")
     assert shown.exit_code == 1
