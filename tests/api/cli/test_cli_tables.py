@@ -35,7 +35,7 @@ TABLES = (
 OTHERS = (
     *(("studies", "Chang2008"), ("claims", "C04"), ("dataset", "describe", "pd-slit")),
     ("dataset", "realism", "--dataset", "pd-slit"),
-    *(("assess", "--method", "BCM"), ("run", "Chang2008", "--condition", "nominal")),
+    *(("assess", "--method", "BCM"), ("run", "Pita2014", "--condition", "nominal")),
     *(("survey", "check"), ("recommend", "--detector", "Event", "--mask", "Lens")),
     ("get", "/v1/taxonomy"),
 )
