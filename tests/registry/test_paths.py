@@ -131,3 +131,25 @@ def test_an_impossible_question_has_no_flow(survey: Facts) -> None:
     ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
     flow = answer_flow(recommend(ask, facts=survey))
     assert (flow.paths, flow.nodes, flow.links) == ({}, (), ())
+
+
+def test_what_is_not_measured_stands_for_a_study_whose_method_is_not(
+    survey: Facts, published: Measurements
+) -> None:
+    """A method that a study uses is a row of its own only where no measured one is of its kind."""
+    alone = 0
+    for place in gather(survey, published):
+        measured = [design for design in place.designs if design.rows]
+        for design in place.designs:
+            if design.rows or len(design.stages) > 1 or not design.is_specified:
+                continue
+            kinds = set(survey.taxonomy.kinds("model", design.model))
+            served = {
+                key
+                for other in measured
+                if other.extractor == design.extractor and kinds & set(other.stages)
+                for key in other.users
+            }
+            assert design.users - served, (place.architecture, design.extractor, design.model)
+            alone += 1
+    assert alone > 5
