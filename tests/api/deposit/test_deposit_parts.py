@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import json
 import shutil
 from pathlib import Path
 from typing import Any
@@ -11,13 +12,16 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from api.deposit import code_archive
+from api.deposit import code_archive, verification
 from api.deposit.code_archive import CodeArchiveError, archive_of, write_code
+from api.deposit.crate import CRATE
+from api.deposit.package import DESCRIPTOR
 from api.metadata.bundled import documents
 from api.metadata.errors import write_errors
 from api.metadata.identity import identity
 from benchmark.results.samples import COLUMNS, DIRECTION_COLUMNS, path_of
 from benchmark.results.store import PUBLISHED
+from files.checksums import read_checksums
 
 NAME = "pd-slit"
 ERRORS, DIRECTIONS = (path_of(NAME, directions=is_directions) for is_directions in (False, True))
@@ -128,3 +132,37 @@ def test_archives_are_the_same_however_they_are_packed(tmp_path: Path) -> None:
     assert not code_archive._same(one, third)
     third.write_bytes(b"no archive")
     assert not code_archive._same(one, third)
+
+
+def test_a_package_and_a_crate_agree_with_the_files_that_are_listed(small: Path) -> None:
+    """Each untrue number or digest is named."""
+    package = json.loads((small / DESCRIPTOR).read_text())
+    crate = json.loads((small / CRATE).read_text())
+    resource = package["resources"][0]
+    path = small / resource["path"]
+    path.write_text("name\n" + "a\n" * 400)
+    listed = {**read_checksums(small), resource["path"]: digest(path)}
+    resource |= {"bytes": path.stat().st_size, "hash": f"sha256:{digest(path)}"}
+    at = next(n for n, one in enumerate(crate["@graph"]) if one["@id"] == resource["path"])
+    crate["@graph"][at] |= {"contentSize": str(path.stat().st_size), "sha256": digest(path)}
+    assert list(verification._of_package(package, small, listed)) == []
+    assert list(verification._of_crate(crate, small, listed)) == []
+    for name, value, said in (
+        ("bytes", resource["bytes"] + 1, "bytes are not those of"),
+        ("hash", f"sha256:{'0' * 64}", "hash is not that of"),
+    ):
+        wrong = {**package, "resources": [{**resource, name: value}, *package["resources"][1:]]}
+        (found,) = verification._of_package(wrong, small, listed)
+        assert said in found
+    twice = {**package, "resources": [resource, *package["resources"]]}
+    assert "stands there twice" in " ".join(verification._of_package(twice, small, listed))
+    for name, value, said in (
+        ("contentSize", "1", "contentSize is not its size"),
+        ("sha256", "0" * 64, "sha256 is not that of"),
+        ("@id", "nowhere.csv", "is not described"),
+    ):
+        graph = list(crate["@graph"])
+        graph[at] = {**graph[at], name: value}
+        found = list(verification._of_crate({**crate, "@graph": graph}, small, listed))
+        assert found[0].startswith(resource["path"])
+        assert said in found[0]
