@@ -19,10 +19,10 @@ from api.http.openapi import describe
 from api.metadata.identity import version
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
-from api.server.asking import visit_start_page
 from api.server.kept import KeptAnswers
 from api.server.prefix import UnderPrefix
 from api.service.knowledge import Knowledge
+from api.web.asking import visit_start_page
 from api.web.middleware import EveryResponse
 from api.web.negotiation import PARQUET
 

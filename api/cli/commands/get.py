@@ -32,7 +32,7 @@ def get(
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; the help does without it
     from api.server.app import create_app  # noqa: PLC0415
-    from api.server.asking import fetch_answer  # noqa: PLC0415
+    from api.web.asking import fetch_answer  # noqa: PLC0415
 
     path, _, query = address.partition("?")
     if not path.startswith("/"):

@@ -3,7 +3,7 @@
 import asyncio
 from html.parser import HTMLParser
 
-from api.server.asking import fetch_answer, visit_start_page
+from api.web.asking import fetch_answer, visit_start_page
 
 
 class Pictures(HTMLParser):
