@@ -2,7 +2,8 @@
 
 Of every board and condition the pipeline that comes nearest to a bound is scored on units nobody
 has seen. One unit may be luckier than a bound that is a mean over units, several may not: printed
-is the root of the mean square of its errors on them over that bound.
+is the root of the mean square of its errors on them, each over its own bound. Which is that of the
+standard unit times what each unit, known, has of that one's: drifts of another unit are no spread.
 """
 
 from __future__ import annotations
@@ -11,8 +12,11 @@ import argparse
 import math
 import statistics
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from benchmark.contract import ON_BENCH, Cell, UnknownNameError
 from benchmark.leaderboard import scope
@@ -23,6 +27,9 @@ from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.runner import RunInterruptedError, run
 from files.atomic import temporary_directory
+
+if TYPE_CHECKING:
+    from benchmark.datasets.preset import Preset
 
 #: Bounds that stand beside a score: of a unit that is known, and of one that is not.
 BOUNDS = ("bound_deg", "bound_unit_deg")
@@ -72,7 +79,7 @@ def nearest_to_bounds(scores: Mapping[Cell, Row], near: float = NEAR) -> dict[Ce
 def ratio_to_bound(
     cell: Cell, bound: str, standard: Row, errors_deg: Sequence[float]
 ) -> RatioToBound:
-    """Compare errors of at least two units with a bound of the standard one.
+    """Compare errors of at least two units, as if each had the standard one's bound, with that.
 
     The standard error is that of a mean of squares, by the spread over the units.
     """
@@ -104,12 +111,32 @@ def try_bounds(
             found = measured.scores()
     except KeyboardInterrupt as interrupted:
         raise RunInterruptedError("interrupted; nothing of it is kept") from interrupted
+    shares = {
+        place: _shares(known.presets[place[0]], place[1], fresh)
+        for place in dict.fromkeys((cell.dataset, cell.condition) for cell in chosen)
+    }
     ratios = {}
     for cell, bounds in chosen.items():
-        errors = [found[replace(cell, unit=unit)]["rms_deg"] for unit in fresh]
-        answered = [error for error in errors if error is not None]
-        ratios[cell] = [ratio_to_bound(cell, bound, scores[cell], answered) for bound in bounds]
+        rows = [found[replace(cell, unit=unit)] for unit in fresh]
+        errors = [
+            row["rms_deg"] / share
+            for row, share in zip(rows, shares[cell.dataset, cell.condition], strict=True)
+            if row["rms_deg"] is not None
+        ]
+        ratios[cell] = [ratio_to_bound(cell, bound, scores[cell], errors) for bound in bounds]
     return ratios
+
+
+def _shares(preset: Preset, condition: str, units: Iterable[int]) -> list[float]:
+    """Return the bounds of single samples of units, each known, over that of the standard one."""
+
+    def known(one: Preset) -> float:
+        bound = getattr(one, "sample_bound", one.bound)(condition, "test")
+        seen = np.asarray(bound.observable, dtype=np.bool_)
+        return float(np.sqrt(np.mean(np.asarray(bound.angle_deg)[seen] ** 2)))
+
+    standard = known(preset)
+    return [known(preset.for_unit(unit)) / standard for unit in units]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
