@@ -46,7 +46,7 @@ _TASK, _SAID = "task.json", "said.json"
 #: beside other work that keeps the machine busy it would load for minutes.
 _BEGIN = """
 import os, runpy
-os.setpriority(os.PRIO_PROCESS, 0, 10)
+os.setpriority(os.PRIO_PROCESS, 0, max(10, os.getpriority(os.PRIO_PROCESS, 0)))
 runpy.run_module("calibrate.uploaded", run_name="__main__", alter_sys=True)
 """
 _NAME = re.compile(r"[^A-Za-z0-9._-]+")
