@@ -95,7 +95,7 @@ def try_bounds(
 ) -> dict[Cell, list[RatioToBound]]:
     """Score what comes nearest to bounds on fresh units; nothing is written to the store.
 
-    ValueError for fewer than two units, of which no standard error follows.
+    ValueError for fewer than two units, or answers of fewer: no standard error follows of them.
     """
     if units < 2:
         raise ValueError(f"expected at least 2 units, got {units}")
@@ -123,6 +123,8 @@ def try_bounds(
             for row, share in zip(rows, shares[cell.dataset, cell.condition], strict=True)
             if row["rms_deg"] is not None
         ]
+        if len(errors) < 2:
+            raise ValueError(f"{cell}: expected answers of 2 units or more, got {len(errors)}")
         ratios[cell] = [ratio_to_bound(cell, bound, scores[cell], errors) for bound in bounds]
     return ratios
 
