@@ -31,7 +31,7 @@ def meaning(name: str, said: str | None = None) -> str:
     name
         Of the member.
     said
-        What its model says; by default what the vocabulary says, or nothing.
+        Description in its model. The vocabulary describes a member without one.
     """
     if ring := _RING.fullmatch(name):
         return f"RMS error {ring[1]} to {ring[2]} degrees off the axis."

@@ -35,7 +35,7 @@ Row = Mapping[str, Any]
 
 
 class Measurements:
-    """What has been measured, read once from published files; nothing where there are none.
+    """Published measurements, each file read once; a directory may have none.
 
     Parameters
     ----------
