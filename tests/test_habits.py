@@ -148,11 +148,19 @@ def test_a_ratio_is_of_the_best_times() -> None:
     assert ratio(step, step, repeats=2, clock=lambda: now[0]) == 5.0
 
 
-@pytest.mark.parametrize("module", ["registry/answer.py", "algorithms/models/filters.py"])
-def test_a_mutant_is_tried_with_the_tests_that_import_its_module_first(module: str) -> None:
+def test_a_fault_is_tried_with_the_tests_that_ran_its_line(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("cosmic_ray")
     from tools import mutants
 
-    near, further = mutants.tests_of(module)
-    assert module.removesuffix(".py").rpartition("/")[2] in near[0].read_text("utf-8")
-    assert len({*near, *further}) == len(near) + len(further) > 3
+    text = {
+        "api/a.py": "def asked(x):\n    return inner(\n        x,\n    )\n",
+        "algorithms/k.py": "STEP = 2\n@compiled\ndef inner(x):\n    return x * STEP\n",
+    }
+    ran = {"api/a.py": {2: ["tests/api/test_a.py::test_a[1]", "tests/api/test_a.py::test_a[2]"]}}
+    monkeypatch.setattr(mutants, "_sources", lambda: text)
+    monkeypatch.setattr(mutants, "_ran", lambda file: ran.get(file, {}))
+    expected = ran["api/a.py"][2]
+    assert mutants.tests_of("api/a.py", [3]) == expected  # a line within the statement
+    assert mutants.tests_of("algorithms/k.py", [4]) == expected  # a kernel: by who calls it
+    assert mutants.tests_of("algorithms/k.py", [1]) == expected  # read at import: by who names it
+    assert mutants.tests_of("api/a.py", [1]) == []

@@ -1,60 +1,48 @@
-"""Mutation testing by Cosmic Ray: a drawn sample, and the tests of the mutant that is in place.
+"""Mutation testing by Cosmic Ray: a drawn sample, and the tests that reach the mutant in place.
 
 `python -m tools.mutants draw DIRECTORY --number 100 --seed N` writes a configuration and a session
 of so many mutants, each of another module, drawn with the modules' lengths as weights; `cosmic-ray
-exec` tries them. `python -m tools.mutants test` runs the tests of the modules that differ from git.
+exec` tries them. `python -m tools.mutants test` runs the tests that reach what differs from git, by
+what coverage noted of them in `REACHED` (`make mutants` writes it).
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import random
 import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from os.path import commonpath
 from pathlib import Path
 
 from cosmic_ray.work_db import WorkDB, use_db
 from cosmic_ray.work_item import WorkItem
+from coverage import CoverageData
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = Path(__file__).with_name("cosmic-ray.toml")
+#: Which tests ran which lines, as `pytest --cov --cov-context=test` writes it.
+REACHED = ROOT / "out" / "reached.coverage"
 FLOORS = ("files", "survey_data", "registry", "algorithms", "calibrate", "benchmark", "api")
 #: They compare digests of the code, or what it draws, with what is committed: red at any change.
-_AT_ANY_CHANGE = (
-    "api/docs/test_documentation.py",
-    "api/test_pictures.py",
-    "benchmark/as_sold/test_measure.py::test_the_published_rows_are_of_the_code",
-    "benchmark/leaderboard/test_leaderboard_published.py::test_the_record_is_of_the_code_as_it_is",
-    "benchmark/leaderboard/test_study_record.py::test_the_record_is_as_its_commands_wrote_it",
+_AT_ANY_CHANGE = re.compile(r"^tests/api/(docs/test_documentation|test_pictures)\.py")
+_NOT_THEM = (
+    "not test_the_published_rows_are_of_the_code and not test_the_record_is_of_the_code_as_it_is"
+    " and not test_the_record_is_as_its_commands_wrote_it"
 )
-#: Tests that reach what discovery finds, what a command names and what a page shows, by floor.
-_MEASURING = (
-    "benchmark/running/test_published_cells.py",
-    "benchmark/claims/test_trials_measured.py",
-)
-_REACHING = {
-    ("algorithms/",): ("algorithms/test_common_suite.py", *_MEASURING),
-    ("benchmark/simulator/", "benchmark/datasets/"): (
-        "benchmark/datasets/test_published_heads.py",
-        *_MEASURING,
-    ),
-    ("benchmark/",): (
-        "benchmark/test_experiment_plots.py",
-        "benchmark/claims/test_trials_measured.py",
-        "benchmark/sweeps",
-        "benchmark/leaderboard",
-    ),
-    ("api/",): tuple(f"api/{face}" for face in ("pages", "figures", "service", "http", "cli")),
-}
-#: Of what they import alone: they wait for servers, and for processes behind all others.
+#: They wait for servers, and for processes behind all others: tried last.
 _WAITING = re.compile(
-    r"/api/server/|/test_(http_calibrations|http_hanging_up|http_uploads|upload_callers)\.py$"
+    r"/api/server/|/test_(http_calibrations|http_hanging_up|http_uploads|upload_callers)\.py"
 )
-#: Test files by way of users, which are many of a module that much is built on.
-_MANY = 40
+#: Tests that a mutant is tried with at most; examples of one test that come before other tests.
+_MANY, _EXAMPLES = 240, 2
+#: How far a kernel's or a constant's users are followed, where no test ran the line itself.
+_STEPS = 4
 #: What pytest exits with where it was given no test that is not slow.
 _ALL_SLOW = 5
 #: Type hints and what is declared alone; the next mutant of the module is taken.
@@ -84,8 +72,8 @@ def draw(directory: Path, number: int, seed: int) -> None:
     assert tomllib.loads(config.read_text())["cosmic-ray"]["module-path"]
     session = directory / "session.sqlite"
     session.unlink(missing_ok=True)
-    command = [Path(sys.executable).with_name("cosmic-ray"), "init", config, session]
-    subprocess.run(command, cwd=ROOT, check=True)
+    program = Path(sys.executable).with_name("cosmic-ray")
+    subprocess.run([program, "init", config, session], cwd=ROOT, check=True)
     rng = random.Random(seed)
     with use_db(str(session), WorkDB.Mode.open) as database:
         of_module: dict[Path, list[WorkItem]] = {}
@@ -100,42 +88,115 @@ def draw(directory: Path, number: int, seed: int) -> None:
     sys.stdout.write(f"{len(kept)} mutants, seed {seed}\n")
 
 
-def tests_of(module: str) -> tuple[list[Path], list[Path]]:
-    """Return the test files that are near a module, and further ones, the nearest first.
+def tests_of(module: str, lines: Iterable[int]) -> list[str]:
+    """Return the tests that reach lines of a module, of its own folder first.
 
-    Near are those that import it, and those of its folder and of the folders above. Further are
-    those that import what uses it, step by step up to `_MANY`, and those of `_REACHING`.
+    Those that ran one of the lines. Where there are none, as with compiled kernels and what is
+    read at import, those that ran a line that names what the lines define, and so on for what that
+    line defines; before them whole test files that import the module.
     """
-    every = [
-        path
-        for path in sorted((ROOT / "tests").rglob("test_*.py"))
-        if path.parent.name != "browser"
+    places = {(module, number) for line in lines for number in _statement(module, line)}
+    tests = {test for file, line in places for test in _ran(file).get(line, ())}
+    near = [] if tests else _importing(module)
+    seen: set[str] = set()
+    for _ in range(_STEPS):
+        if tests:
+            break
+        names = {name for file, line in places for name in _defined(file, line)} - seen
+        seen |= names
+        places = {place for name in names for place in _named(name)}
+        tests = {test for file, line in places for test in _ran(file).get(line, ())}
+    tests = {test for test in tests if not _AT_ANY_CHANGE.search(test)}
+    return near + [test for test in _ordered(tests, module) if test.partition("::")[0] not in near]
+
+
+def _ordered(tests: Iterable[str], module: str) -> list[str]:
+    """Return the first of them: a few examples of each test, of near folders before far ones."""
+    of_function: dict[str, list[str]] = {}
+    for test in sorted(tests):
+        of_function.setdefault(test.partition("[")[0], []).append(test)
+    folder = f"tests/{module}"
+
+    def distance(test: str) -> tuple[bool, int]:
+        shared = commonpath([test.partition("::")[0], folder])
+        return bool(_WAITING.search(test)), -len(shared)
+
+    few = [test for examples in of_function.values() for test in examples[:_EXAMPLES]]
+    rest = [test for examples in of_function.values() for test in examples[_EXAMPLES:]]
+    return [*sorted(few, key=distance), *sorted(rest, key=distance)][:_MANY]
+
+
+@cache
+def _measured() -> CoverageData:
+    if not REACHED.exists():
+        sys.exit(f"no {REACHED.relative_to(ROOT)}: `make mutants` runs the tests under coverage")
+    data = CoverageData(str(REACHED))
+    data.read()
+    return data
+
+
+@cache
+def _ran(file: str) -> Mapping[int, list[str]]:
+    """Return the tests that ran each line of a file; what ran at import is of none."""
+    lines = _measured().contexts_by_lineno(str(ROOT / file))
+    return {
+        line: [name.rpartition("|")[0] for name in names if name] for line, names in lines.items()
+    }
+
+
+@cache
+def _sources() -> dict[str, str]:
+    return {
+        path.relative_to(ROOT).as_posix(): path.read_text("utf-8")
+        for floor in FLOORS
+        for path in sorted((ROOT / floor).rglob("*.py"))
+    }
+
+
+def _named(name: str) -> Iterator[tuple[str, int]]:
+    """Give every line of the floors that names it."""
+    word = re.compile(rf"\b{re.escape(name)}\b")
+    for file, text in _sources().items():
+        if name in text:
+            for number, line in enumerate(text.splitlines(), 1):
+                if word.search(line):
+                    yield file, number
+
+
+def _around(file: str, line: int) -> list[ast.stmt]:
+    """Return the statements around a line, the outermost first."""
+    return [
+        node
+        for node in ast.walk(ast.parse(_sources()[file]))
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno)
     ]
-    sources = [path for floor in FLOORS for path in sorted((ROOT / floor).rglob("*.py"))]
-    near = _importing(module, every)
-    every = [path for path in every if not _WAITING.search(path.as_posix())]
-    for folder in Path("tests", module).parents[:-2]:  # down to that of the floor
-        near += [path for path in every if path.parent == ROOT / folder]
-    further: list[Path] = []
-    users, known = [module], {module}
-    while users and len(set(further)) < _MANY:
-        using = dict.fromkeys(p for user in users for p in _importing(user, sources))
-        users = [u for p in using if (u := p.relative_to(ROOT).as_posix()) not in known]
-        known.update(users)
-        for user in users:
-            further += _importing(user, every)
-            if len(set(further)) >= _MANY:
-                break
-    further = list(dict.fromkeys(further))[:_MANY]
-    for floors, places in _REACHING.items():
-        if module.startswith(floors):
-            reaching = [ROOT / "tests" / place for place in places]
-            further += [p for place in reaching for p in every if p.is_relative_to(place)]
-    near = list(dict.fromkeys(near))
-    return near, [path for path in dict.fromkeys(further) if path not in near]
 
 
-def _importing(module: str, files: list[Path]) -> list[Path]:
+def _statement(file: str, line: int) -> range:
+    """Return the lines of the statement that a line is of, without the body below its head."""
+    node = _around(file, line)[-1]
+    body = getattr(node, "body", None)
+    end = body[0].lineno if body else (node.end_lineno or line) + 1
+    return range(node.lineno, max(end, line + 1))
+
+
+def _defined(file: str, line: int) -> Iterator[str]:
+    """Give the names of the function around a line, or of what it assigns and the class around."""
+    around = _around(file, line)
+    functions = [node for node in around if isinstance(node, ast.FunctionDef)]
+    if functions:
+        yield functions[0].name
+        return
+    for node in around:
+        if isinstance(node, ast.ClassDef):
+            yield node.name
+        elif isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            yield from (target.id for target in targets if isinstance(target, ast.Name))
+
+
+def _importing(module: str) -> list[str]:
+    """Return the test files that import a module."""
     dotted = module.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
     package, _, name = dotted.rpartition(".")
     imports = re.compile(
@@ -143,41 +204,45 @@ def _importing(module: str, files: list[Path]) -> list[Path]:
         rf"|from {package} import (?:\([^)]*|.*)\b{name}\b)",
         re.MULTILINE,
     )
-    return [path for path in files if name in (text := _text(path)) and imports.search(text)]
+    files = [
+        path.relative_to(ROOT).as_posix() for path in sorted((ROOT / "tests").rglob("test_*.py"))
+    ]
+    return [
+        file
+        for file in files
+        if "/browser/" not in file
+        and not _AT_ANY_CHANGE.search(file)
+        and imports.search((ROOT / file).read_text("utf-8"))
+    ]
 
 
-@cache
-def _text(path: Path) -> str:
-    return path.read_text("utf-8")
+def _changed() -> dict[str, list[int]]:
+    """Return the lines that differ from git, as they were, by file."""
+    command = ["git", "diff", "--unified=0", "--", *FLOORS]
+    text = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    found: dict[str, list[int]] = {}
+    lines: list[int] = []
+    for line in text.splitlines():
+        if line.startswith("--- a/"):
+            lines = found.setdefault(line[6:], [])
+        elif at := re.match(r"@@ -(\d+)(?:,(\d+))? ", line):
+            first, count = int(at[1]), int(at[2] or 1)
+            lines.extend(range(first, first + max(count, 1)))
+    return found
 
 
 def test() -> int:
-    """Run the tests of what differs from git; the exit status is that of pytest.
-
-    The further ones are run where the near ones notice nothing.
-    """
-    command = ["git", "diff", "--name-only", "--", *FLOORS]
-    changed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    pytest = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "-m",
-        "not slow",
-    ]
-    pytest += [f"--deselect=tests/{place}" for place in _AT_ANY_CHANGE]
-    for files in zip(*(tests_of(module) for module in changed.stdout.split()), strict=True):
-        chosen = list(dict.fromkeys(path for of_module in files for path in of_module))
-        if not chosen:
-            continue
-        done = subprocess.run([*pytest, *chosen], cwd=ROOT, check=False)
-        if done.returncode not in {0, _ALL_SLOW}:
-            return done.returncode
-    return 0
+    """Run the tests that reach what differs from git; the exit status is that of pytest."""
+    chosen = dict.fromkeys(
+        t for module, lines in _changed().items() for t in tests_of(module, lines)
+    )
+    if not chosen:
+        return 0
+    options = ["-x", "-q", "-p", "no:cacheprovider", "-m", "not slow", "-k", _NOT_THEM]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", *options, *chosen], cwd=ROOT, check=False
+    )
+    return 0 if done.returncode == _ALL_SLOW else done.returncode
 
 
 def main() -> int:
