@@ -17,6 +17,11 @@ FACES = np.array([[0, 0, 2**0.5], [1, 0, 1], [-1, 0, 1], [0, 1, 1], [0, -1, 1]])
 SPREAD = 1e-3
 
 
+@pytest.fixture(autouse=True)
+def _the_same_draws_whatever_ran_before() -> None:
+    RNG.bit_generator.state = np.random.default_rng(11).bit_generator.state
+
+
 def suns(count: int, widest_deg: float = 28.0) -> np.ndarray:
     tangents = np.tan(np.deg2rad(RNG.uniform(-widest_deg, widest_deg, (count, 2))))
     ahead = np.column_stack([tangents, np.ones(count)])
