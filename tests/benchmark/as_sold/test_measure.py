@@ -3,6 +3,7 @@
 import csv
 import dataclasses
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ from benchmark.as_sold.measure import (
     measure,
     narrowed,
 )
-from benchmark.as_sold.record import beside_stated, tally
+from benchmark.as_sold.record import RECORD, beside_stated, tally
 from benchmark.datasets.corrected import corrections
 from benchmark.datasets.features import features_of
 from benchmark.datasets.units import tolerances
@@ -167,6 +168,32 @@ def test_the_published_rows_are_of_the_code_and_every_sensor_stands_beside_its_f
         if not 0.5 <= own <= 2.0:
             assert row["reason"]
     assert tally(found).startswith(f"{near} of {len(cells)} built sensors")
+
+
+def test_the_reason_of_a_disagreement_names_what_is_within_a_factor_of_two_and_nothing_else():
+    rows = RECORD.read(PUBLISHED)
+    seen = set()
+    for one in beside_stated():
+        if one["ratio"] is None or 0.5 <= one["ratio"] <= 2.0:
+            continue
+        others = [
+            error
+            for name, error in rows[one["hardware"]].items()
+            if name.endswith("_deg") and name not in {"half_fov_deg", f"{own_cell(one)}_deg"}
+        ]
+        within = [e for e in others if e is not None and 0.5 <= e / one["stated_deg"] <= 2.0]
+        seen.add(bool(within))
+        if within:
+            said = re.findall(r"([\d.e-]+) deg", one["reason"])
+            assert sorted(map(float, said)) == sorted(float(f"{e:.2g}") for e in within)
+        else:
+            assert one["reason"].startswith("neither depth, bench nor level explains it")
+    assert seen == {True, False}
+
+
+def own_cell(one):
+    depth = one["depth"]
+    return depth if depth == "uncalibrated" else f"{depth}_{one['bench']}"
 
 
 def test_two_sensors_of_one_kind_share_their_runs_at_either_level():
