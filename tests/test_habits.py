@@ -152,15 +152,14 @@ def test_a_fault_is_tried_with_the_tests_that_ran_its_line(monkeypatch: pytest.M
     pytest.importorskip("cosmic_ray")
     from tools import mutants
 
-    text = {
-        "api/a.py": "def asked(x):\n    return inner(\n        x,\n    )\n",
-        "algorithms/k.py": "STEP = 2\n@compiled\ndef inner(x):\n    return x * STEP\n",
-    }
-    ran = {"api/a.py": {2: ["tests/api/test_a.py::test_a[1]", "tests/api/test_a.py::test_a[2]"]}}
+    caller = "from algorithms.k import inner\n\n\ndef asked(x):\n    return inner(\n        x)\n"
+    kernel = "STEP = 2\n@compiled\ndef inner(x):\n    return x * STEP\n"
+    text = {"api/a.py": caller, "algorithms/k.py": kernel}
+    ran = {"api/a.py": {5: ["tests/api/test_a.py::test_a[1]", "tests/api/test_a.py::test_a[2]"]}}
     monkeypatch.setattr(mutants, "_sources", lambda: text)
     monkeypatch.setattr(mutants, "_ran", lambda file: ran.get(file, {}))
-    expected = ran["api/a.py"][2]
-    assert mutants.tests_of("api/a.py", [3]) == expected  # a line within the statement
+    expected = ran["api/a.py"][5]
+    assert mutants.tests_of("api/a.py", [6]) == expected  # a line within the statement
     assert mutants.tests_of("algorithms/k.py", [4]) == expected  # a kernel: by who calls it
     assert mutants.tests_of("algorithms/k.py", [1]) == expected  # read at import: by who names it
-    assert mutants.tests_of("api/a.py", [1]) == []
+    assert mutants.tests_of("api/a.py", [4]) == []

@@ -98,13 +98,13 @@ def tests_of(module: str, lines: Iterable[int]) -> list[str]:
     places = {(module, number) for line in lines for number in _statement(module, line)}
     tests = {test for file, line in places for test in _ran(file).get(line, ())}
     near = [] if tests else _importing(module)
-    seen: set[str] = set()
+    seen: set[tuple[str, str]] = set()
     for _ in range(_STEPS):
         if tests:
             break
-        names = {name for file, line in places for name in _defined(file, line)} - seen
+        names = {(file, name) for file, line in places for name in _defined(file, line)} - seen
         seen |= names
-        places = {place for name in names for place in _named(name)}
+        places = {place for file, name in names for place in _named(file, name)}
         tests = {test for file, line in places for test in _ran(file).get(line, ())}
     tests = {test for test in tests if not _AT_ANY_CHANGE.search(test)}
     return near + [test for test in _ordered(tests, module) if test.partition("::")[0] not in near]
@@ -137,10 +137,15 @@ def _measured() -> CoverageData:
 
 @cache
 def _ran(file: str) -> Mapping[int, list[str]]:
-    """Return the tests that ran each line of a file; what ran at import is of none."""
-    lines = _measured().contexts_by_lineno(str(ROOT / file))
+    """Return the tests that ran each line of a file's functions; what runs at import is of none."""
+    within: set[int] = set()
+    for node in _statements(file):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            within.update(range(node.body[0].lineno, (node.end_lineno or node.lineno) + 1))
     return {
-        line: [name.rpartition("|")[0] for name in names if name] for line, names in lines.items()
+        line: [name.rpartition("|")[0] for name in names if name]
+        for line, names in _measured().contexts_by_lineno(str(ROOT / file)).items()
+        if line in within
     }
 
 
@@ -153,28 +158,37 @@ def _sources() -> dict[str, str]:
     }
 
 
-def _named(name: str) -> Iterator[tuple[str, int]]:
-    """Give every line of the floors that names it."""
-    word = re.compile(rf"\b{re.escape(name)}\b")
+def _named(module: str, name: str) -> Iterator[tuple[str, int]]:
+    """Give every line that names what a module defines, in it and where it is imported."""
+    word, imports = re.compile(rf"\b{re.escape(name)}\b"), _imports(module)
     for file, text in _sources().items():
-        if name in text:
+        if file == module or (name[0] != "_" and name in text and imports.search(text)):
             for number, line in enumerate(text.splitlines(), 1):
                 if word.search(line):
                     yield file, number
+
+
+@cache
+def _statements(file: str) -> list[ast.stmt]:
+    tree = ast.parse(_sources()[file])
+    return [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
 
 
 def _around(file: str, line: int) -> list[ast.stmt]:
     """Return the statements around a line, the outermost first."""
     return [
         node
-        for node in ast.walk(ast.parse(_sources()[file]))
-        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or node.lineno)
+        for node in _statements(file)
+        if node.lineno <= line <= (node.end_lineno or node.lineno)
     ]
 
 
 def _statement(file: str, line: int) -> range:
     """Return the lines of the statement that a line is of, without the body below its head."""
-    node = _around(file, line)[-1]
+    around = _around(file, line)
+    if not around:
+        return range(line, line + 1)
+    node = around[-1]
     body = getattr(node, "body", None)
     end = body[0].lineno if body else (node.end_lineno or line) + 1
     return range(node.lineno, max(end, line + 1))
@@ -195,15 +209,19 @@ def _defined(file: str, line: int) -> Iterator[str]:
             yield from (target.id for target in targets if isinstance(target, ast.Name))
 
 
-def _importing(module: str) -> list[str]:
-    """Return the test files that import a module."""
+def _imports(module: str) -> re.Pattern[str]:
     dotted = module.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
     package, _, name = dotted.rpartition(".")
-    imports = re.compile(
+    return re.compile(
         rf"^\s*(?:from {dotted} import|import {dotted}\b"
         rf"|from {package} import (?:\([^)]*|.*)\b{name}\b)",
         re.MULTILINE,
     )
+
+
+def _importing(module: str) -> list[str]:
+    """Return the test files that import a module."""
+    imports = _imports(module)
     files = [
         path.relative_to(ROOT).as_posix() for path in sorted((ROOT / "tests").rglob("test_*.py"))
     ]
