@@ -1,0 +1,1 @@
+"""Small convolutional networks that read frames: trained with an extra, evaluated without it."""
