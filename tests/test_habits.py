@@ -86,7 +86,7 @@ def test_what_one_lock_holds_is_left_out_of_the_other() -> None:
 def test_extras_are_for_users_and_groups_for_development() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
     assert set(project["project"]["optional-dependencies"]) == {
-        *("cluster", "deposit", "guide", "serve")
+        *("cluster", "deposit", "guide", "learn", "serve")
     }
     wanted = [one for group in project["dependency-groups"].values() for one in group]
     names = {re.split(r"[<>=]", one)[0].lower() for one in wanted if isinstance(one, str)}

@@ -63,6 +63,7 @@ COMMANDS: dict[str, str] = {
 EXTRAS = {
     **dict.fromkeys(("hatchling", "httpx", "tenacity"), "deposit"),
     **dict.fromkeys(("distributed",), "cluster"),
+    **dict.fromkeys(("torch",), "learn"),
     **dict.fromkeys(("furo", "myst_parser", "sphinx"), "guide"),
     **dict.fromkeys(
         (
