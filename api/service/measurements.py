@@ -85,10 +85,9 @@ class Measurements:
     @cached_property
     def directions(self) -> Sequence[Mapping[str, Any]]:
         """What came of the survey's future directions."""
-        from benchmark.directions.outcomes import outcomes  # noqa: PLC0415 - loads the simulator
-        from benchmark.spoofing.record import RECORD  # noqa: PLC0415 - that alone needs it
+        from benchmark.directions import outcomes as found  # noqa: PLC0415 - loads the simulator
 
-        return outcomes(self._every_unit, list(RECORD.read(self._store.directory).values()))
+        return found.outcomes(self._every_unit, found.read_trials(self._store.directory))
 
     @cached_property
     def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:

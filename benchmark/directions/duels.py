@@ -102,12 +102,18 @@ def _best(board: Sequence[Row], family: str) -> _Best | None:
 
 def _duel(dataset: str, one: _Best, other: _Best) -> Duel:
     units = sorted(unit for unit in one[1].keys() & other[1].keys() if unit % 2)
-    logs = np.array([one[1][unit] - other[1][unit] for unit in units])
-    mean = float(logs.mean())
+    return judge(dataset, one[0], other[0], [one[1][unit] - other[1][unit] for unit in units])
+
+
+def judge(
+    dataset: str, first: tuple[str, str], second: tuple[str, str], logs: Sequence[float]
+) -> Duel:
+    """Return what logarithms of the ratio of errors, one a unit, say of two pipelines."""
+    mean = float(np.mean(logs))
     outcome: Outcome = "tie"
     if abs(mean) > math.log(ALIKE):
-        scatter = float(logs.std(ddof=1)) / math.sqrt(len(logs))
+        scatter = float(np.std(logs, ddof=1)) / math.sqrt(len(logs))
         beyond = (abs(mean) - math.log(ALIKE)) / max(scatter, 1e-9)
         if float(stdtr(len(logs) - 1, -beyond)) < CHANCE / 2.0:
             outcome = "win" if mean < 0 else "loss"
-    return Duel(dataset, one[0], other[0], math.exp(mean), outcome)
+    return Duel(dataset, first, second, math.exp(mean), outcome)

@@ -2,34 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from statistics import median
+from types import MappingProxyType
 from typing import Any
 
 from benchmark.directions.duels import Duel, duels, verdict
 from benchmark.directions.paper import CALCULATIONS, Calculation
 from benchmark.directions.rules import NOT_TRIED, Rule, rules
-from benchmark.directions.trials import laser
+from benchmark.directions.trials import Trial, laser, not_tried
+from benchmark.results.store import PUBLISHED
+from benchmark.running.experiment import recorded_experiments
 
 Row = Mapping[str, Any]
 
 
-def outcomes(rows: Iterable[Row], spoofed: Sequence[Row] = ()) -> list[dict[str, Any]]:
+#: What decides by an experiment's rows, by its name.
+TRIALS: Mapping[str, Callable[[Sequence[Row]], Trial]] = MappingProxyType({"spoofing": laser})
+
+
+def read_trials(directory: Path | str = PUBLISHED) -> dict[str, list[Row]]:
+    """Return the rows of every experiment that decides a direction, by its name."""
+    kinds = recorded_experiments()
+    return {name: list(kinds[name].record.read(directory).values()) for name in TRIALS}
+
+
+def outcomes(
+    rows: Iterable[Row], tried: Mapping[str, Sequence[Row]] = MappingProxyType({})
+) -> list[dict[str, Any]]:
     """Return the outcome of every rule, in order.
 
     Parameters
     ----------
     rows
         Scores of all units (`Store.rows(unit=None)`).
-    spoofed
-        Rows of the experiment with lasers.
+    tried
+        Rows of experiments by name (`read_trials`).
     """
     scored = list(rows)
-    return [_outcome(rule, scored, spoofed) for rule in rules().values()]
+    return [_outcome(rule, scored, tried) for rule in rules().values()]
 
 
-def _outcome(rule: Rule, rows: Sequence[Row], spoofed: Sequence[Row]) -> dict[str, Any]:
+def _outcome(rule: Rule, rows: Sequence[Row], tried: Mapping[str, Sequence[Row]]) -> dict[str, Any]:
     found: list[Duel] = []
     sensors: Sequence[Row] = ()
     value: float | None = None
@@ -43,9 +59,10 @@ def _outcome(rule: Rule, rows: Sequence[Row], spoofed: Sequence[Row]) -> dict[st
         decided, text, unit = verdict(found), _counted(found), "error, first over second"
         value, against = (median(one.ratio for one in found) if found else None), 1.0
     elif rule.kind == "trial":
-        tried = laser(spoofed)
-        decided, text, unit = tried.verdict, tried.text, tried.unit
-        value, against, sensors = tried.value, tried.against, tried.sensors
+        trial = TRIALS.get(rule.first, not_tried)(tried.get(rule.first, ()))
+        decided, text, unit = trial.verdict, trial.text, trial.unit
+        value, against = trial.value, trial.against
+        sensors, found = trial.sensors, list(trial.duels)
     else:
         decided, text, unit = NOT_TRIED, f"Not tried: {rule.rule}.", ""
     return {
@@ -70,7 +87,7 @@ def _outcome(rule: Rule, rows: Sequence[Row], spoofed: Sequence[Row]) -> dict[st
             for one in found
         ],
         "sensors": list(sensors),
-        "experiment": rule.first if sensors else "",
+        "experiment": rule.first if rule.kind == "trial" else "",
     }
 
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from scipy.special import bdtr, betaincinv
 
+from benchmark.directions.duels import Duel
 from benchmark.directions.rules import NOT_TRIED
 from benchmark.experiments.spoofing import SENSORS
 from benchmark.spoofing.record import level_of
@@ -20,14 +21,20 @@ _CHANCE = 0.05
 
 
 class Trial(NamedTuple):
-    """What came of it: as `benchmark.directions.paper.Calculation`, with a row a sensor."""
+    """What came of it: as `benchmark.directions.paper.Calculation`, with a row a sensor or duel."""
 
     verdict: str
     text: str
     value: float | None
     against: float | None
     unit: str
-    sensors: Sequence[Row]
+    sensors: Sequence[Row] = ()
+    duels: Sequence[Duel] = ()
+
+
+def not_tried(_: Sequence[Row]) -> Trial:
+    """Say that an experiment has a rule and no outcome yet."""
+    return Trial(NOT_TRIED, "Not tried: the experiment of the rule has not run.", None, None, "")
 
 
 def laser(rows: Sequence[Row]) -> Trial:
@@ -35,7 +42,7 @@ def laser(rows: Sequence[Row]) -> Trial:
     sensors = [_sensor(row) for row in rows]
     deciding = [one for one in sensors if one["has_pattern"] and one["noticed"] is not None]
     if not deciding:
-        return Trial(NOT_TRIED, "Not tried: no laser was simulated.", None, None, "", ())
+        return Trial(NOT_TRIED, "Not tried: no laser was simulated.", None, None, "")
     passed = [one["noticed"] >= NOTICED and one["keeps_rate"] for one in deciding]
     verdict = "depends on the data set"
     if all(passed) or not any(passed):
