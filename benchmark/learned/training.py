@@ -21,6 +21,9 @@ Loss = Callable[[Any, Any], Any]
 #: Changes frames and targets of a batch at random, before they are learned from.
 Augment = Callable[[np.random.Generator, Floats32, Floats32], tuple[Floats32, Floats32]]
 
+#: Evaluates layers by their weights, as `evaluate`.
+Run = Callable[[Sequence[Layer], dict[str, tuple[Any, Any]], Any], Any]
+
 
 class LearnExtraMissingError(ImportError):
     """PyTorch is not installed; the message names the extra that brings it."""
@@ -53,12 +56,17 @@ def torch() -> ModuleType:
     return found
 
 
-def drawn_weights(layers: Sequence[Layer], *names: str | int) -> dict[str, tuple[Any, Any]]:
-    """Draw first weights as He2015 for ReLU, biases zero; as tensors that learn, by layer."""
+def drawn_weights(
+    layers: Sequence[Layer], *names: str | int, last: float = 1.0
+) -> dict[str, tuple[Any, Any]]:
+    """Draw first weights as He2015 for ReLU, biases zero; as tensors that learn, by layer.
+
+    Those of the last layer are `last` times as large.
+    """
     at, stream, found = torch(), generator("learned", *names, "weights"), {}
     for layer in layers:
         if layer.shape:
-            width = np.sqrt(2.0 / np.prod(layer.shape[1:]))
+            width = np.sqrt(2.0 / np.prod(layer.shape[1:])) * (last if layer is layers[-1] else 1.0)
             weight = stream.normal(scale=width, size=layer.shape).astype(np.float32)
             bias = np.zeros(layer.shape[0], dtype=np.float32)
             found[layer.name] = tuple(
@@ -105,6 +113,8 @@ def train(
     recipe: Recipe,
     card: dict[str, Any],
     augment: Augment | None = None,
+    run: Run | None = None,
+    last: float = 1.0,
 ) -> Network:
     """Train a network.
 
@@ -126,6 +136,9 @@ def train(
         What the frames are of; recipe, last loss and framework are added.
     augment
         Changes a batch before it is learned from, or None.
+    run, last
+        Evaluates layers with weights that are shared otherwise than `evaluate` does, or None;
+        size of the last layer's first weights over the others'.
 
     Returns
     -------
@@ -138,10 +151,10 @@ def train(
         Without PyTorch.
     """
     at = torch()
-    weights = drawn_weights(layers, name, recipe.seed)
+    weights = drawn_weights(layers, name, recipe.seed, last=last)
     moving = at.optim.Adam([part for pair in weights.values() for part in pair], lr=recipe.rate)
     steps = recipe.epochs * -(-len(frames) // recipe.batch)
-    done, last = 0, 0.0
+    done, ended = 0, 0.0
     for epoch in range(recipe.epochs):
         stream = generator("learned", name, recipe.seed, "epoch", epoch)
         order, losses = stream.permutation(len(frames)), []
@@ -151,20 +164,20 @@ def train(
             if augment is not None:
                 given, wanted = augment(stream, given, wanted)
             moving.param_groups[0]["lr"] = recipe.rate * _share(done / steps)
-            found = evaluate(layers, weights, at.from_numpy(given))
+            found = (run or evaluate)(layers, weights, at.from_numpy(given))
             value = loss(found, at.from_numpy(wanted))
             moving.zero_grad()
             value.backward()
             moving.step()
             losses.append(float(value.detach()))
             done += 1
-        last = float(np.mean(losses))
+        ended = float(np.mean(losses))
     said = {
         **card,
         "name": name,
         "recipe": asdict(recipe),
         "frames": len(frames),
-        "last_loss": float(f"{last:.6g}"),
+        "last_loss": float(f"{ended:.6g}"),
         "framework": f"torch {at.__version__}",
     }
     kept = {
