@@ -28,12 +28,15 @@ class Plan:
     """What the network of a data set is shown, on how many frames a unit it learns, and how.
 
     `corner_mm` is the place in the mask, on both axes, whose image is the centre that is learned.
+    With `robust_px` errors far beyond it count by their size, not their square: where frames at
+    the edge of the field are faint, they would drown all others.
     """
 
     look: Look
     frames: int
     recipe: Recipe
     corner_mm: float = 0.0
+    robust_px: float = 0.0
 
 
 def examples(plan: Plan, name: str, units: Any, count: int) -> tuple[Floats32, Floats32]:
@@ -80,7 +83,10 @@ def train_centres(name: str, plan: Plan, seed: int, learned: tuple[Floats32, Flo
         maps = maps.reshape(-1, 2, side * side).softmax(dim=2).reshape(-1, 2, side, side) * seen
         shares = maps / maps.sum(dim=(2, 3), keepdim=True)
         found = (shares[:, 0].sum(dim=1) @ places, shares[:, 1].sum(dim=2) @ places)
-        return ((at.stack(found, dim=1) - wanted[:, :2]) ** 2).sum(dim=1).mean()
+        squares = ((at.stack(found, dim=1) - wanted[:, :2]) ** 2).sum(dim=1)
+        if plan.robust_px:
+            squares = (squares + plan.robust_px**2).sqrt()
+        return squares.mean()
 
     card = {
         "dataset": name,

@@ -17,12 +17,17 @@ from benchmark.learned.training import Recipe, torch, train
 
 #: The data set: a window of a CMOS frame behind one hole, lit in few of its pixels.
 DATASET, LOOK = "cmos-single-aperture", Look(24, 15)
-#: Frames of the record's scored unit that networks of the ablation learn from.
-FRAMES_OF_ONE = (441, 3200)
-#: Steps that every one of them takes, and frames a step.
-STEPS, BATCH = 2500, 16
+#: Steps of training, and frames a step.
+STEPS, BATCH = 25_000, 16
+#: Networks of the ablation, which learn from frames of a scored unit: how many, in how many steps.
+OF_ONE = ((441, STEPS // 10), (3200, STEPS // 10), (3200, STEPS))
 #: Frames of each training unit.
 FRAMES = 400
+
+
+def name_of_one(frames: int, steps: int) -> str:
+    """Name a network of the ablation."""
+    return f"sscnn-one-unit-{frames}" + ("-long" if steps == STEPS else "")
 
 
 def scaling() -> tuple[tuple[float, float], float]:
@@ -51,11 +56,13 @@ def angles_deg(sun: Floats) -> Floats:
     return np.degrees(np.arctan(sun[:, :2] / sun[:, 2:]))
 
 
-def train_sparse(name: str, learned: tuple[Floats32, Floats32], card: dict[str, Any]) -> Network:
+def train_sparse(
+    name: str, learned: tuple[Floats32, Floats32], card: dict[str, Any], steps: int = STEPS
+) -> Network:
     """Train a network, of dense windows whose pixels that are not lit are held at zero."""
     at, made = torch(), layers()
     side, (_, scale) = LOOK.window_px, scaling()
-    steps = at.arange(side, dtype=at.float32) / scale
+    along = at.arange(side, dtype=at.float32) / scale
 
     def angles(weights: Any, light: Any, first: Any) -> Any:
         lit = (light > LIT).to(at.float32)
@@ -69,8 +76,8 @@ def train_sparse(name: str, learned: tuple[Floats32, Floats32], card: dict[str, 
         shares = shares / shares.sum(dim=(2, 3), keepdim=True)
         means = at.cat(
             [
-                shares.sum(dim=2) @ steps + first[:, :1].expand(-1, HEADS),
-                shares.sum(dim=3) @ steps + first[:, 1:].expand(-1, HEADS),
+                shares.sum(dim=2) @ along + first[:, :1].expand(-1, HEADS),
+                shares.sum(dim=3) @ along + first[:, 1:].expand(-1, HEADS),
             ],
             dim=1,
         )
@@ -87,7 +94,7 @@ def train_sparse(name: str, learned: tuple[Floats32, Floats32], card: dict[str, 
     first = np.zeros_like(light)
     first[:, 0, 0, :2] = aims[:, :2]
     given = np.concatenate([light, first], axis=1)
-    epochs = -(-STEPS * BATCH // len(light))
+    epochs = -(-steps * BATCH // len(light))
     return train(
         name, made, given, aims[:, 2:], loss=at.nn.functional.mse_loss,
         recipe=Recipe(epochs, BATCH, 3e-3), card=card, run=run, last=0.1,

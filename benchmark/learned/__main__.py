@@ -1,0 +1,73 @@
+"""`python -m benchmark.learned`: train all networks again, from nothing but the simulator.
+
+With names, only those. Weights go to `benchmark/learned/networks`, beside the code that reads them;
+the same machine gives the same digits.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from benchmark.learned import centre_training, sparse_training
+from benchmark.learned.frames import TRAINING
+from benchmark.learned.network import Network
+from benchmark.learned.networks import NETWORKS
+from benchmark.learned.plans import CENTRES, SEEDS
+
+#: What trains a group of networks: networks by the name of their files.
+Trainer = Callable[[], Mapping[str, Network]]
+
+
+def trainers() -> Mapping[str, Trainer]:
+    """Return what trains each group of networks, by its name."""
+    centres = {f"centres-{name}": partial(_centres, name) for name in CENTRES}
+    return {**centres, "sscnn": _sparse}
+
+
+def _centres(name: str) -> dict[str, Network]:
+    plan = CENTRES[name]
+    learned = centre_training.examples(plan, name, TRAINING, plan.frames)
+    found = {}
+    for seed in SEEDS.get(name, (0,)):
+        made = centre_training.train_centres(name, plan, seed, learned)
+        found[f"centres-{name}-{seed}"] = centre_training.validated(name, plan, made)
+    return found
+
+
+def _sparse() -> dict[str, Network]:
+    count = sparse_training.FRAMES
+    learned = sparse_training.examples(TRAINING, count, "train")
+    said: dict[str, Any] = {"units": [TRAINING.start, TRAINING.stop - 1]}
+    made = sparse_training.train_sparse("sscnn", learned, said)
+    found = {"sscnn": sparse_training.validated(made)}
+    light, aims = sparse_training.examples([1], max(sparse_training.OF_ONE)[0], "one")
+    for frames, steps in sparse_training.OF_ONE:
+        name = sparse_training.name_of_one(frames, steps)
+        part = light[:frames], aims[:frames]
+        found[name] = sparse_training.train_sparse(name, part, {"units": [1, 1]}, steps)
+    return found
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Train networks and write their files."""
+    known = trainers()
+    parser = argparse.ArgumentParser(prog="python -m benchmark.learned", description=main.__doc__)
+    parser.add_argument("names", nargs="*", help="groups; all by default")
+    parser.add_argument("--directory", type=Path, default=NETWORKS, help="where files go")
+    options = parser.parse_args(arguments)
+    for name in options.names or known:
+        begun = time.process_time()
+        for file, network in known[name]().items():
+            network.save(options.directory / f"{file}.npz")
+        sys.stderr.write(f"{name}: {time.process_time() - begun:.0f} s of one core\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,8 @@
+"""Trained networks, a file each; `python -m benchmark.learned` makes them again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+#: The folder.
+NETWORKS = Path(__file__).parent
