@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from benchmark.directions.duels import Duel, duels, verdict
+from benchmark.directions.learned import learned
 from benchmark.directions.paper import CALCULATIONS, Calculation
 from benchmark.directions.rules import NOT_TRIED, Rule, rules
 from benchmark.directions.trials import Trial, laser, not_tried
@@ -20,7 +21,9 @@ Row = Mapping[str, Any]
 
 
 #: What decides by an experiment's rows, by its name.
-TRIALS: Mapping[str, Callable[[Sequence[Row]], Trial]] = MappingProxyType({"spoofing": laser})
+TRIALS: Mapping[str, Callable[[Sequence[Row]], Trial]] = MappingProxyType(
+    {"spoofing": laser, "learned": learned}
+)
 
 
 def read_trials(directory: Path | str = PUBLISHED) -> dict[str, list[Row]]:

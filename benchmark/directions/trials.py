@@ -44,9 +44,9 @@ def laser(rows: Sequence[Row]) -> Trial:
     if not deciding:
         return Trial(NOT_TRIED, "Not tried: no laser was simulated.", None, None, "")
     passed = [one["noticed"] >= NOTICED and one["keeps_rate"] for one in deciding]
-    verdict = "depends on the data set"
+    decided = "depends on the data set"
     if all(passed) or not any(passed):
-        verdict = "pays" if all(passed) else "does not pay"
+        decided = "pays" if all(passed) else "does not pay"
     worst = min(deciding, key=lambda one: float(one["noticed"]))
     believed = [one for one in deciding if one["deceived"] >= 0.5]
     text = (
@@ -81,7 +81,7 @@ def laser(rows: Sequence[Row]) -> Trial:
         text += f" More false alarms than that, which does not count: {', '.join(loud)}."
     if missing := sorted(SENSORS.keys() - {row["dataset"] for row in rows}):
         text += f" Not measured yet: {', '.join(missing)}."
-    return Trial(verdict, text, worst["noticed"], NOTICED, "share noticed, worst sensor", sensors)
+    return Trial(decided, text, worst["noticed"], NOTICED, "share noticed, worst sensor", sensors)
 
 
 def _sensor(row: Row) -> dict[str, Any]:

@@ -1,0 +1,100 @@
+"""Whether a network beats the best extractor and model: by the rule of its direction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from statistics import median
+from typing import Any
+
+from benchmark.directions.duels import Duel, judge, verdict
+from benchmark.directions.trials import Trial, not_tried
+
+Row = Mapping[str, Any]
+
+#: The way of reading that decides, and what it meets.
+_FIRST, _SECOND = "seed 0", "classical"
+#: An error that does not count, as it is answered too seldom, is as large as can be.
+_NONE_DEG = 180.0
+
+
+def learned(rows: Sequence[Row]) -> Trial:
+    """Decide by the rows of the experiment."""
+    heat = [row for row in rows if row["network"] == "heat map"]
+    if not heat:
+        return not_tried(rows)
+    found = [_met(row) for row in heat]
+    wins, losses = (sum(one.outcome == name for one in found) for name in ("win", "loss"))
+    ratios = sorted(one.ratio for one in found)
+    over = [_over_bound(row, _FIRST) for row in heat]
+    text = (
+        f"Of {len(found)} data sets the network errs less on {wins}, the best pipeline on "
+        f"{losses}; the ratio of errors is {ratios[0]:.2g} to {ratios[-1]:.2g}. The network's "
+        f"error is {min(over):.2g} to {max(over):.2g} times the bound."
+    )
+    text += "".join(map(_seeds, heat)) + _trusted(heat)
+    text += "".join(_sparse(row) for row in rows if row["network"] == "sscnn")
+    middle, unit = float(f"{median(ratios):.4g}"), "error, network over pipeline"
+    return Trial(verdict(found), text, middle, 1.0, unit, (), found)
+
+
+def _errors(row: Row, way: str) -> list[float]:
+    return [_NONE_DEG if error is None else error for error in row["errors_deg"][way]]
+
+
+def _met(row: Row) -> Duel:
+    pairs = zip(_errors(row, _FIRST), _errors(row, _SECOND), strict=True)
+    names = ("heat map", row["model"]), (row["extractor"], row["model"])
+    return judge(row["dataset"], *names, [math.log(one / other) for one, other in pairs])
+
+
+def _over_bound(row: Row, way: str) -> float:
+    logs = [math.log(error / row["bound_deg"]) for error in _errors(row, way)]
+    return math.exp(sum(logs) / len(logs))
+
+
+def _seeds(row: Row) -> str:
+    """Say how far training seeds are apart, where there are several."""
+    over = [_over_bound(row, way) for way in row["errors_deg"] if way.startswith("seed")]
+    if len(over) < 2:
+        return ""
+    return (
+        f" On {row['dataset']} {len(over)} training seeds give {min(over):.2g} to "
+        f"{max(over):.2g} times the bound."
+    )
+
+
+def _trusted(rows: Sequence[Row]) -> str:
+    """Say how often networks and pipelines answer wrongly without a flag."""
+    said = []
+    for trial, name in (
+        ("no Sun", "without a Sun"),
+        ("two Suns", "with two"),
+        ("unseen mask",) * 2,
+    ):
+        shares = []
+        for way in (_FIRST, _SECOND):
+            of = [one for row in rows for one in row["trust"]]
+            counts = [one for one in of if (one["way"], one["trial"]) == (way, trial)]
+            frames = sum(one["frames"] for one in counts)
+            shares.append(100.0 * sum(one["wrong"] for one in counts) / max(frames, 1))
+        said.append(f"{name} {shares[0]:.2g} % ({shares[1]:.2g} %)")
+    return f" Wrong answers without a flag, in brackets the pipelines': {', '.join(said)}."
+
+
+def _sparse(row: Row) -> str:
+    """Say what came of the network straight to two angles, and why."""
+    means = {one["learned"]: one["mean_deg"] for one in row["ablation"]}
+    names = ("other units, alone", "other units, tuned", "no network")
+    alone, tuned, best = (means[name] for name in names)
+    own = [
+        f"{one['mean_deg']:.2g} deg ({one['frames']} frames, {one['steps']} steps)"
+        for one in row["ablation"]
+        if "itself" in one["learned"]
+    ]
+    return (
+        f" SSCNN, sparse and straight to two angles (Herman2025c states a mean of 0.005 deg), is "
+        f"off by {alone:.2g} deg on {row['dataset']}, by {tuned:.2g} deg once calibrated on the "
+        f"unit, the best pipeline by {best:.2g} deg; trained on frames of the scored unit itself, "
+        f"by {', '.join(own)}."
+    )
