@@ -1,7 +1,7 @@
 """`python -m benchmark.learned`: train all networks again, from nothing but the simulator.
 
-With names, only those. Weights go to `benchmark/learned/networks`, beside the code that reads them;
-the same machine gives the same digits.
+With names, only those. Weights go beside the code that reads them; the same machine gives the same
+digits. Masks by networks stand above this package: where they are there, theirs are trained, too.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -20,37 +22,51 @@ from benchmark.learned.network import Network
 from benchmark.learned.networks import NETWORKS
 from benchmark.learned.plans import CENTRES, SEEDS
 
-#: What trains a group of networks: networks by the name of their files.
-Trainer = Callable[[], Mapping[str, Network]]
+#: What trains a group of networks: networks by their files.
+Trainer = Callable[[], Mapping[Path, Network]]
+#: The package of masks by networks.
+_MASKS = "benchmark.segmentation"
 
 
 def trainers() -> Mapping[str, Trainer]:
     """Return what trains each group of networks, by its name."""
     centres = {f"centres-{name}": partial(_centres, name) for name in CENTRES}
-    return {**centres, "sscnn": _sparse}
+    return {**centres, "sscnn": _sparse, **_masks()}
 
 
-def _centres(name: str) -> dict[str, Network]:
+def _masks() -> dict[str, Trainer]:
+    if find_spec(_MASKS) is None:
+        return {}
+    training, kept = (import_module(f"{_MASKS}.{name}") for name in ("training", "unet"))
+
+    def trained(board: str) -> dict[Path, Network]:
+        return {kept.weights_of(board): training.trained_anew(board)}
+
+    return {f"segmentation-{board}": partial(trained, board) for board in training.FRAMES}
+
+
+def _centres(name: str) -> dict[Path, Network]:
     plan = CENTRES[name]
     learned = centre_training.examples(plan, name, TRAINING, plan.frames)
     found = {}
     for seed in SEEDS.get(name, (0,)):
         made = centre_training.train_centres(name, plan, seed, learned)
-        found[f"centres-{name}-{seed}"] = centre_training.validated(name, plan, made)
+        found[NETWORKS / f"centres-{name}-{seed}.npz"] = centre_training.validated(name, plan, made)
     return found
 
 
-def _sparse() -> dict[str, Network]:
+def _sparse() -> dict[Path, Network]:
     count = sparse_training.FRAMES
     learned = sparse_training.examples(TRAINING, count, "train")
     said: dict[str, Any] = {"units": [TRAINING.start, TRAINING.stop - 1]}
     made = sparse_training.train_sparse("sscnn", learned, said)
-    found = {"sscnn": sparse_training.validated(made)}
+    found = {NETWORKS / "sscnn.npz": sparse_training.validated(made)}
     light, aims = sparse_training.examples([1], max(sparse_training.OF_ONE)[0], "one")
     for frames, steps in sparse_training.OF_ONE:
         name = sparse_training.name_of_one(frames, steps)
         part = light[:frames], aims[:frames]
-        found[name] = sparse_training.train_sparse(name, part, {"units": [1, 1]}, steps)
+        made = sparse_training.train_sparse(name, part, {"units": [1, 1]}, steps)
+        found[NETWORKS / f"{name}.npz"] = made
     return found
 
 
@@ -59,12 +75,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     known = trainers()
     parser = argparse.ArgumentParser(prog="python -m benchmark.learned", description=main.__doc__)
     parser.add_argument("names", nargs="*", help="groups; all by default")
-    parser.add_argument("--directory", type=Path, default=NETWORKS, help="where files go")
+    parser.add_argument("--directory", type=Path, help="where files go instead")
     options = parser.parse_args(arguments)
+    if unknown := [name for name in options.names if name not in known]:
+        parser.error(f"no networks {unknown[0]!r}; there are {', '.join(known)}")
     for name in options.names or known:
         begun = time.process_time()
         for file, network in known[name]().items():
-            network.save(options.directory / f"{file}.npz")
+            network.save(options.directory / file.name if options.directory else file)
         sys.stderr.write(f"{name}: {time.process_time() - begun:.0f} s of one core\n")
     return 0
 

@@ -7,6 +7,7 @@ import pytest
 
 from benchmark import datasets
 from benchmark.experiments.learned import Learned
+from benchmark.learned.__main__ import main
 from benchmark.learned.centres import CentreReader
 from benchmark.learned.frames import TRAINING, VALIDATION, Unit
 from benchmark.learned.measure import UNITS
@@ -46,6 +47,12 @@ def test_a_kept_network_finds_the_spot_of_a_unit_that_it_has_not_seen() -> None:
     off = found + taken.origin_px - unit.spot_px(taken.sun)
     assert np.nanmedian(np.abs(off)) < 3.0 * max(network.card["validation_px"])
     assert np.isfinite(found).all(axis=1).mean() > 0.9
+
+
+def test_a_group_of_networks_that_is_not_there_is_refused_with_those_that_are(capsys) -> None:
+    with pytest.raises(SystemExit):
+        main(["centres-cmos-lense"])
+    assert "no networks 'centres-cmos-lense'; there are centres-" in capsys.readouterr().err
 
 
 @pytest.fixture(scope="module")
