@@ -13,6 +13,7 @@ from benchmark.directions.duels import Duel, duels, verdict
 from benchmark.directions.learned import learned
 from benchmark.directions.paper import CALCULATIONS, Calculation
 from benchmark.directions.rules import NOT_TRIED, Rule, rules
+from benchmark.directions.segmented import segmented
 from benchmark.directions.trials import Trial, laser, not_tried
 from benchmark.results.store import PUBLISHED
 from benchmark.running.experiment import recorded_experiments
@@ -22,7 +23,7 @@ Row = Mapping[str, Any]
 
 #: What decides by an experiment's rows, by its name.
 TRIALS: Mapping[str, Callable[[Sequence[Row]], Trial]] = MappingProxyType(
-    {"spoofing": laser, "learned": learned}
+    {"spoofing": laser, "learned": learned, "segmentation": segmented}
 )
 
 
