@@ -54,7 +54,7 @@ class Board(NamedTuple):
 BOARDS: Mapping[str, Board] = MappingProxyType(
     {
         "cmos-single-aperture": Board(MirrorRegistration, BasicCentroid, BareDetector, (300, 40)),
-        "cmos-l-slit": Board(LineWindows, BasicCentroid, BareDetector, (120, 30)),
+        "cmos-l-slit": Board(LineWindows, BasicCentroid, BareDetector, (300, 40)),
         "cmos-encoded": Board(WindowedList, SpotList, CodedPlaces, (80, 20)),
     }
 )
