@@ -12,7 +12,7 @@ from benchmark import datasets
 from benchmark.learned.network import Floats32, Network
 from benchmark.learned.training import Recipe, torch, train
 from benchmark.segmentation.frames import FAULTS, Unit
-from benchmark.segmentation.unet import averaged, channels, layers, weights_of
+from benchmark.segmentation.unet import averaged, channels, layers
 
 #: Units that it learns from; 0 to 9 are scored, `CHECKED` were looked at while this was made.
 LEARNED, CHECKED = range(100, 110), range(110, 112)
@@ -45,11 +45,6 @@ def trained_anew(board: str) -> Network:
         card={"data set": board, "units": [LEARNED.start, LEARNED.stop - 1]},
         augment=_crops,
     )
-
-
-def rebuild(board: str) -> None:
-    """Train the network of a data set and write its file."""
-    trained_anew(board).save(weights_of(board))
 
 
 def _cross_entropy(odds: Any, wanted: Any) -> Any:
