@@ -74,3 +74,14 @@ def test_a_sensor_on_its_own_solar_cells_is_no_passive_one() -> None:
     assert (wireless.power_mw, wireless.supply) == (None, "self-powered")
     for product in products():
         assert (product.power_mw == 0) == (product.supply == "passive")
+
+
+def test_a_sensor_on_its_own_cells_draws_no_power_and_others_draw_the_median() -> None:
+    built = built_sensors()
+    seen = set()
+    for one in products():
+        known = [built[key].power_mw for key in one.ids if built[key].power_mw is not None]
+        own = one.supply == "self-powered"
+        seen.add((own, bool(known)))
+        assert one.power_mw == (None if own or not known else median(known))
+    assert (False, True) in seen
