@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import datetime
+import datetime as dt
 
 import pandas as pd
 import pytest
 
 from calibrate.forms.cells import numbers_of
 
-MOMENT = datetime.datetime(2024, 3, 5, 6, 7, 8, 250_000, tzinfo=datetime.UTC)
+MOMENT = dt.datetime(2024, 3, 5, 6, 7, 8, 250_000, tzinfo=dt.UTC)
 
 
 @pytest.mark.parametrize(
