@@ -93,7 +93,8 @@ load: ## 200 users for a minute on the service at URL, by Locust (`pip install l
 # In place: nothing may be changed meanwhile. `git diff` shows a mutant that a hard kill left.
 mutants: $(COMPILED) ## try NUMBER=100 small faults in the code, by Cosmic Ray; list those that no test notices
 	git diff --quiet
-	COVERAGE_FILE=out/reached.coverage $(TEST) -q -m "not slow" --cov --cov-context=test --cov-report=
+	mkdir -p out
+	COVERAGE_FILE=$(CURDIR)/out/reached.coverage $(TEST) -q -m "not slow" --cov --cov-context=test --cov-report=
 	$(BIN)/python -m tools.mutants draw out/mutants --number $(or $(NUMBER),100) $(if $(SEED),--seed $(SEED))
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/cosmic-ray exec out/mutants/cosmic-ray.toml out/mutants/session.sqlite
 	$(BIN)/cr-report --surviving-only --show-diff out/mutants/session.sqlite
