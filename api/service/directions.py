@@ -27,5 +27,5 @@ def directions(known: Knowledge) -> Document:
         for one in known.measurements.directions
     ]
     counts = Counter(one["verdict"] for one in items)
-    words = ", ".join(f"{count} {name}" for name, count in counts.most_common())
+    words = ", ".join(f"{name}: {count}" for name, count in counts.most_common())
     return Document({"words": words, "items": items}, columns_of(DirectionRow), lambda: items)
