@@ -29,7 +29,9 @@ def test_numbers_of_all_workers_are_added_up(
         kept: Any = MultiProcessValue(lambda number=worker: number)  # type: ignore[no-untyped-call]
         labels = (("method", "route", "status"), ("GET", "/v1/x", "200"))
         total = ("sunatlas_http_requests", "sunatlas_http_requests_total")
-        kept("counter", *total, *labels, "Requests answered.").inc(count)
+        value = kept("counter", *total, *labels, "Requests answered.")
+        value.inc(count)
+        value._file.close()  # else it stays open until a later test fails for it
     found = {
         sample.name: sample.value
         for family in text_string_to_metric_families(observation.exposition().decode())
