@@ -264,3 +264,12 @@ def test_a_cursor_belongs_to_its_list():
             page(rows, "/v1/x", asked(cursor=wrong))
         assert refused.value.status_code == 400
     assert list(page(rows, "/v1/x", asked(cursor=cursor)).items) == [3, 4, 5]
+
+
+@pytest.mark.parametrize(("number", "status"), [(1, 400), (2, 200), (4, 200), (5, 422)])
+def test_two_to_four_architectures_are_compared(atlas: Any, number: int, status: int) -> None:
+    every = ["CMOS:Single-Ap.", "CCD:Single-Ap.", "QPD:Single-Ap.", "PSD:Single-Ap.", "CCD:Slit"]
+    asked = urlencode([("architecture", one) for one in every[:number]])
+    answer = atlas.get(f"/v1/compare?{asked}")
+    assert answer.status_code == status
+    assert len(answer.json().get("items", ())) == (number if status == 200 else 0)
