@@ -9,6 +9,7 @@ from typing import Any
 
 from benchmark.directions.duels import Duel, judge, verdict
 from benchmark.directions.trials import Trial, not_tried
+from benchmark.learned.sparse_measure import PAPER_DEG
 
 Row = Mapping[str, Any]
 
@@ -93,8 +94,9 @@ def _sparse(row: Row) -> str:
         if "itself" in one["learned"]
     ]
     return (
-        f" SSCNN, sparse and straight to two angles (Herman2025c states a mean of 0.005 deg), is "
-        f"off by {alone:.2g} deg on {row['dataset']}, by {tuned:.2g} deg once calibrated on the "
-        f"unit, the best pipeline by {best:.2g} deg; trained on frames of the scored unit itself, "
+        " SSCNN, sparse and straight to two angles (Herman2025c states a mean of "
+        f"{PAPER_DEG:g} deg), is off by {alone:.2g} deg on {row['dataset']}, by {tuned:.2g} deg "
+        f"once calibrated on the unit, the best pipeline by {best:.2g} deg; trained on frames of "
+        "the scored unit itself, "
         f"by {', '.join(own)}."
     )

@@ -36,7 +36,7 @@ _SUNLESS = frozenset({"no Sun", "unseen mask"})
 #: Frames whose reading is timed, and how often.
 _TIMED, _TIMES = 100, 5
 
-#: Frames to detector coordinates (N, 2), or to directions (N, 3), and whether they are stood for.
+#: Frames to detector coordinates (N, 2), or to directions (N, 3), and which have no flag.
 Read = Callable[[Frames], tuple[Floats, Any]]
 
 
@@ -44,7 +44,7 @@ class Answers(Protocol):
     """What answers frames."""
 
     def answers(self, frames: Frames) -> tuple[Floats, Any]:
-        """Directions (N, 3), and whether the reading stands for them."""
+        """Return directions (N, 3), and which of them have no flag (N,)."""
         ...
 
 
@@ -82,7 +82,7 @@ def by_network(reader: CentreReader) -> Read:
 
 
 def by_extractor(extractor: Extractor) -> Read:
-    """Return how an extractor reads frames; an answer with a flag is not one it stands for."""
+    """Return how an extractor reads frames, and which answers have no flag."""
 
     def read(frames: Frames) -> tuple[Floats, Any]:
         found = extractor.measure(frames.corrected)
@@ -100,7 +100,7 @@ class Calibrated:
     model: Any
 
     def answers(self, frames: Frames) -> tuple[Floats, Any]:
-        """Directions (N, 3), and whether the reading stands for them."""
+        """Return directions (N, 3), and which of them have no flag (N,)."""
         features, stands = self.read(frames)
         return np.asarray(self.model.predict(features)), stands
 

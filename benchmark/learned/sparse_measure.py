@@ -56,7 +56,7 @@ class Direct:
     reader: SparseReader
 
     def answers(self, frames: Frames) -> tuple[Floats, Any]:
-        """Directions (N, 3), and whether the network stands for them."""
+        """Return directions (N, 3), and which of them are answers (N,)."""
         tangents, _ = self.reader.read(frames.corrected, frames.origin_px)
         ahead = np.column_stack([tangents, np.ones(len(tangents))])
         found = ahead / np.linalg.norm(ahead, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Trained networks, a file each; `python -m benchmark.learned` makes them again."""
+"""Trained networks, a file each; `python -m benchmark.retraining` makes them again."""
 
 from __future__ import annotations
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
 from benchmark import datasets
 from benchmark.experiments.learned import Learned
-from benchmark.learned.__main__ import main
 from benchmark.learned.centres import CentreReader
 from benchmark.learned.frames import TRAINING, VALIDATION, Unit
 from benchmark.learned.measure import UNITS
@@ -15,6 +16,7 @@ from benchmark.learned.network import Network
 from benchmark.learned.networks import NETWORKS
 from benchmark.learned.plans import CENTRES, SEEDS
 from benchmark.learned.record import RECORD
+from benchmark.retraining import main
 from benchmark.running.experiment import list_due
 
 NAMES = {path.stem for path in NETWORKS.glob("*.npz")}
@@ -53,6 +55,14 @@ def test_a_group_of_networks_that_is_not_there_is_refused_with_those_that_are(ca
     with pytest.raises(SystemExit):
         main(["centres-cmos-lense"])
     assert "no networks 'centres-cmos-lense'; there are centres-" in capsys.readouterr().err
+
+
+def test_without_pytorch_nothing_begins_and_the_extra_is_named(monkeypatch, capsys) -> None:
+    monkeypatch.setitem(sys.modules, "torch", None)
+    with pytest.raises(SystemExit) as ended:
+        main(["centres-cmos-lens"])
+    assert ended.value.code == 2
+    assert "pip install 'sun-sensor-atlas[learn]'" in capsys.readouterr().err
 
 
 @pytest.fixture(scope="module")

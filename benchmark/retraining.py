@@ -1,7 +1,7 @@
-"""`python -m benchmark.learned`: train all networks again, from nothing but the simulator.
+"""`python -m benchmark.retraining`: train all networks again, from nothing but the simulator.
 
 With names, only those. Weights go beside the code that reads them; the same machine gives the same
-digits. Masks by networks stand above this package: where they are there, theirs are trained, too.
+digits.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -21,28 +19,24 @@ from benchmark.learned.frames import TRAINING
 from benchmark.learned.network import Network
 from benchmark.learned.networks import NETWORKS
 from benchmark.learned.plans import CENTRES, SEEDS
+from benchmark.learned.training import LearnExtraMissingError, torch
+from benchmark.processes import call_to_end
+from benchmark.segmentation import training as mask_training
+from benchmark.segmentation.unet import weights_of
 
 #: What trains a group of networks: networks by their files.
 Trainer = Callable[[], Mapping[Path, Network]]
-#: The package of masks by networks.
-_MASKS = "benchmark.segmentation"
 
 
 def trainers() -> Mapping[str, Trainer]:
     """Return what trains each group of networks, by its name."""
     centres = {f"centres-{name}": partial(_centres, name) for name in CENTRES}
-    return {**centres, "sscnn": _sparse, **_masks()}
+    masks = {f"segmentation-{board}": partial(_masks, board) for board in mask_training.FRAMES}
+    return {**centres, "sscnn": _sparse, **masks}
 
 
-def _masks() -> dict[str, Trainer]:
-    if find_spec(_MASKS) is None:
-        return {}
-    training, kept = (import_module(f"{_MASKS}.{name}") for name in ("training", "unet"))
-
-    def trained(board: str) -> dict[Path, Network]:
-        return {kept.weights_of(board): training.trained_anew(board)}
-
-    return {f"segmentation-{board}": partial(trained, board) for board in training.FRAMES}
+def _masks(board: str) -> dict[Path, Network]:
+    return {weights_of(board): mask_training.trained_anew(board)}
 
 
 def _centres(name: str) -> dict[Path, Network]:
@@ -73,12 +67,18 @@ def _sparse() -> dict[Path, Network]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Train networks and write their files."""
     known = trainers()
-    parser = argparse.ArgumentParser(prog="python -m benchmark.learned", description=main.__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmark.retraining", description=main.__doc__
+    )
     parser.add_argument("names", nargs="*", help="groups; all by default")
     parser.add_argument("--directory", type=Path, help="where files go instead")
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.names if name not in known]:
         parser.error(f"no networks {unknown[0]!r}; there are {', '.join(known)}")
+    try:
+        torch()
+    except LearnExtraMissingError as error:
+        parser.error(str(error))
     for name in options.names or known:
         begun = time.process_time()
         for file, network in known[name]().items():
@@ -88,4 +88,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    call_to_end(main)
