@@ -1,7 +1,7 @@
 """`python -m benchmark.retraining`: train all networks again, from nothing but the simulator.
 
 With names, only those. Weights go beside the code that reads them; the same machine gives the same
-digits.
+digits with any number of workers.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from benchmark.learned import centre_training, sparse_training
 from benchmark.learned.frames import TRAINING
@@ -21,6 +22,7 @@ from benchmark.learned.networks import NETWORKS
 from benchmark.learned.plans import CENTRES, SEEDS
 from benchmark.learned.training import LearnExtraMissingError, torch
 from benchmark.processes import call_to_end
+from benchmark.running.workers import as_completed
 from benchmark.segmentation import training as mask_training
 from benchmark.segmentation.unet import weights_of
 
@@ -72,6 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("names", nargs="*", help="groups; all by default")
     parser.add_argument("--directory", type=Path, help="where files go instead")
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.names if name not in known]:
         parser.error(f"no networks {unknown[0]!r}; there are {', '.join(known)}")
@@ -79,12 +82,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
         torch()
     except LearnExtraMissingError as error:
         parser.error(str(error))
-    for name in options.names or known:
-        begun = time.process_time()
-        for file, network in known[name]().items():
-            network.save(options.directory / file.name if options.directory else file)
-        sys.stderr.write(f"{name}: {time.process_time() - begun:.0f} s of one core\n")
+    if options.workers < 1:
+        parser.error(f"--workers must be at least 1; got {options.workers}")
+    groups = [_Group(name, options.directory) for name in options.names or known]
+    with closing(as_completed(_trained, groups, options.workers)) as done:
+        for name, seconds in done:
+            sys.stderr.write(f"{name}: {seconds:.0f} s of one core\n")
     return 0
+
+
+class _Group(NamedTuple):
+    """What is trained together, and where its files go, None for where they are read."""
+
+    name: str
+    directory: Path | None
+
+
+def _trained(group: _Group) -> tuple[str, float]:
+    """Train a group and write its files; return its name and the processor's seconds."""
+    begun = time.process_time()
+    for file, network in trainers()[group.name]().items():
+        network.save(group.directory / file.name if group.directory else file)
+    return group.name, time.process_time() - begun
 
 
 if __name__ == "__main__":
