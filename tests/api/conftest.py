@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import csv
 import io
+import os
 import socket
 import threading
 import time
@@ -71,9 +72,13 @@ class Client:
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_working_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Neither read nor touch what this user measured and timed."""
+    """Neither read nor touch what this user measured and timed; workers share a built guide."""
+    working, base = tmp_path_factory.mktemp("working"), tmp_path_factory.getbasetemp()
+    shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "guide"
+    shared.mkdir(exist_ok=True)
+    (working / "guide").symlink_to(shared)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SUNATLAS_STORE", str(tmp_path_factory.mktemp("working")))
+        patch.setenv("SUNATLAS_STORE", str(working))
         yield
 
 

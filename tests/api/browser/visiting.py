@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 from urllib.request import urlopen
 
+from filelock import FileLock
+
 from api.guide import site
 
 if TYPE_CHECKING:  # loaded by those alone who open a page
@@ -69,14 +71,15 @@ class Visit:
 
 
 def build_guide() -> None:
-    """Build the guide's site where the service looks for it; a warning is an error."""
-    done = subprocess.run(
-        [sys.executable, "-m", "api.cli.command_line", "guide", "build", "--strict", "--quiet"],
-        env=os.environ, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, "")
+    """Build the guide's site where the service looks for it, once; a warning is an error."""
     place = site.cached_site()
     assert place is not None
+    with FileLock(place.parent / ".lock"):
+        done = subprocess.run(
+            [sys.executable, "-m", "api.cli.command_line", "guide", "build", "--strict", "--quiet"],
+            env=os.environ, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
     assert place.is_dir()
 
 
