@@ -132,10 +132,16 @@ async def dataset(
         heat=heat_map(every, card["conditions"], condition, WARM),
         curve=curve,
         held=sentences.verdict(held).sentence if held else None,
+        tried=[(d, one) for d in known.measurements.directions for one in _told(d, name)],
         facts=next((one for one in every_board if one["name"] == name), None),
         realism=realism,
         ours=ours,
     )
+
+
+def _told(direction: Mapping[str, Any], name: str) -> list[Mapping[str, Any]]:
+    """Return what a direction's two families of methods did on a data set, where they differ."""
+    return [one for one in direction["duels"] if one["dataset"] == name and one["outcome"] != "tie"]
 
 
 def _field(board: Sequence[Mapping[str, Any]]) -> Figure:

@@ -100,6 +100,24 @@ def test_the_scatter_has_a_point_for_every_judged_error_and_no_other(
         assert all(f": {words} " in text for text in said)
 
 
+def test_a_data_set_says_which_future_directions_were_tried_on_it(atlas: Client) -> None:
+    tried = atlas.get("/v1/directions").json()["items"]
+    told = {
+        (one["dataset"], direction["id"]): (one["first"], times(one["ratio"]), one["second"])
+        for direction in tried
+        for one in direction["duels"]
+        if one["outcome"] != "tie"
+    }
+    assert ("ccd-lens", "D09") in told
+    html = atlas.get("/datasets/ccd-lens").text
+    shown = re.findall(r'<a href="/directions#(\w+)">', html)
+    assert shown == [identity for dataset, identity in told if dataset == "ccd-lens"]
+    first, ratio, second = told["ccd-lens", "D09"]
+    assert f"{first} has {ratio} the error of {second}." in text_of(html)
+    dusty = atlas.get("/datasets/ccd-lens?condition=noise").text
+    assert "/directions#" not in dusty
+
+
 def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
     assert 'class="side"' not in atlas.get("/compare?architecture=CMOS:Encoded").text
     five = "&".join(
