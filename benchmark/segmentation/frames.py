@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.datasets.corrected import correction
-from benchmark.datasets.preset import Preset
+from benchmark.learned.frames import Unit
 from benchmark.seeds import generator
 from benchmark.simulator.optics.earthlight import add_between
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.spoofing.second_light import with_laser
 
-#: What is wrong with the frames of each fault; the first has nothing, the last two no one Sun.
+#: What is wrong with the frames of each fault; the first has nothing, the last two not one Sun.
 FAULTS: Mapping[str, frozenset[str]] = {
     "clean": frozenset(),
     "glare": frozenset({"glare"}),
@@ -72,34 +70,14 @@ class Drawn(NamedTuple):
     origin: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Unit:
-    """One built sensor under the nominal condition, before the Sun."""
-
-    preset: Preset
-
-    @property
-    def _condition(self) -> str:
-        return self.preset.conditions[0]
-
-    @cached_property
-    def sensor(self) -> Any:
-        """As it is tested."""
-        return self.preset.sensor_for(self._condition, "test")
-
-    @cached_property
-    def _pattern(self) -> Any:
-        return self.preset.fixed_pattern(self._condition)
-
-    @cached_property
-    def _correction(self) -> Any:
-        return correction(self.preset, self._condition)
+class FaultyUnit(Unit):
+    """A unit whose frames something may be wrong with."""
 
     def calibration(self) -> tuple[Floats, Floats, NDArray[np.int64]]:
         """Return clean frames (N, H, W), true Suns (N, 3) and windows' first pixels (N, 2)."""
         samples = self.preset.generate(self._condition, "calibration")
         origin = np.asarray(samples.origin_px)
-        return self._corrected(samples.observations, origin), samples.truth, origin
+        return self.correct(samples.observations, origin), samples.truth, origin
 
     def drawn(self, fault: str, count: int) -> Drawn:
         """Return frames under a fault, always the same; Suns drawn as the test's are."""
@@ -149,7 +127,7 @@ class Unit:
             pattern = {**pattern, "gain": pattern["gain"] * passed}
         seen = replace(scene, albedo=more)
         observed = self.sensor.observe(seen, pattern, NoiseStreams.named(*named, "noise"))
-        return Drawn(self._corrected(observed, origin), truth, sun, light, np.asarray(origin))
+        return Drawn(self.correct(observed, origin), truth, sun, light, np.asarray(origin))
 
     def _suns(self, count: int, *named: str | int) -> Floats:
         field: Any = self.preset.directions
@@ -181,10 +159,6 @@ class Unit:
                 return found
             found[near] = self._beside(scene, *named, turn)[near]
         raise ValueError("no place for a second Sun was found in a hundred draws")
-
-    def _corrected(self, observations: NDArray[Any], origin: Any) -> Floats:
-        by = self._correction
-        return np.asarray(by.correct(observations, origin if by.dark.ndim == 2 else None))
 
 
 def _lit(light: Floats) -> NDArray[np.bool_]:

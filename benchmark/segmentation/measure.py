@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark import datasets
 from benchmark.metrics.separation import separation_deg, store
-from benchmark.segmentation.frames import FAULTS, UNANSWERABLE, Drawn, Unit
+from benchmark.segmentation.frames import FAULTS, UNANSWERABLE, Drawn, FaultyUnit
 from benchmark.segmentation.masks import Pixels
 from benchmark.segmentation.methods import BOARDS, Bench
 
@@ -31,7 +31,7 @@ def measure(board: str) -> dict[str, Any]:
     lights: dict[tuple[str, int], Floats] = {}
     names: dict[str, bool] = {}
     for number in UNITS:
-        unit = Unit(datasets.get(board).for_unit(number))
+        unit = FaultyUnit(datasets.get(board).for_unit(number))
         bench = Bench(unit)
         names = {method.name: method.learned for method in bench.methods}
         for fault in FAULTS:

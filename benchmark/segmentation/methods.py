@@ -22,7 +22,7 @@ from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.models.geometric.bare_detector import BareDetector
 from algorithms.models.multiplex.coded_places import CodedPlaces
 from algorithms.pipeline import Pipeline, in_detector_coordinates
-from benchmark.segmentation.frames import Unit
+from benchmark.segmentation.frames import FaultyUnit
 from benchmark.segmentation.masks import (
     Marked,
     Masks,
@@ -114,7 +114,7 @@ class Method:
 class Bench:
     """The methods of a data set, calibrated on clean frames of one unit."""
 
-    def __init__(self, unit: Unit) -> None:
+    def __init__(self, unit: FaultyUnit) -> None:
         preset = unit.preset
         clean, sun, origin = unit.calibration()
         geometry = preset.geometry_for(preset.conditions[0])

@@ -11,7 +11,7 @@ import numpy as np
 from benchmark import datasets
 from benchmark.learned.network import Floats32, Network
 from benchmark.learned.training import Recipe, torch, train
-from benchmark.segmentation.frames import FAULTS, Unit
+from benchmark.segmentation.frames import FAULTS, FaultyUnit
 from benchmark.segmentation.unet import averaged, channels, layers
 
 #: Units that it learns from; 0 to 9 are scored, `CHECKED` were looked at while this was made.
@@ -30,7 +30,7 @@ def trained_anew(board: str) -> Network:
     """Return the network of a data set: the same digits on the same machine."""
     given, wanted = [], []
     for number in LEARNED:
-        unit = Unit(datasets.get(board).for_unit(number))
+        unit = FaultyUnit(datasets.get(board).for_unit(number))
         for fault in FAULTS:
             drawn = unit.drawn(fault, FRAMES[board])
             given.append(channels(drawn.frames))

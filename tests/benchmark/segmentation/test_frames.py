@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.segmentation.frames import DIM, Unit
+from benchmark.segmentation.frames import DIM, FaultyUnit
 from benchmark.segmentation.methods import BOARDS
 from benchmark.segmentation.training import LEARNED
 from benchmark.segmentation.unet import trained
@@ -14,7 +14,7 @@ from benchmark.segmentation.unet import trained
 
 @pytest.mark.slow  # diffraction is tabulated
 def test_the_suns_own_pixels_hold_its_light_and_there_are_none_without_it() -> None:
-    unit = Unit(datasets.get("cmos-single-aperture").for_unit(LEARNED.start))
+    unit = FaultyUnit(datasets.get("cmos-single-aperture").for_unit(LEARNED.start))
     clean = unit.drawn("clean", 20)
     under = np.where(clean.truth, clean.frames, 0.0).sum(axis=(1, 2))
     whole = (clean.frames - np.median(clean.frames)).sum(axis=(1, 2))
