@@ -209,8 +209,18 @@ def corrected_code(saved: SavedCalibration, poses: Readings) -> FlightCode:
     """Return the flight code of a corrected calibration.
 
     Raw rows of the poses that it was corrected by compare code and calibration. NoCodeError if the
-    document holds no program, or the code departs by more than a tenth of the error.
+    document holds no program or one that cannot run, or the code departs by more than a tenth of
+    the error.
     """
+    try:
+        return _corrected_code(saved, poses)
+    except NoCodeError:
+        raise
+    except (LookupError, TypeError, ValueError, StopIteration) as error:  # of constants that misfit
+        raise NoCodeError(f"the old document's program is damaged: {error!s:.200}") from error
+
+
+def _corrected_code(saved: SavedCalibration, poses: Readings) -> FlightCode:
     program = _corrected(program_of(saved.document.get("flight")), saved)
     made = program.steps[0].constants
     raw = np.empty((len(poses), len(program.columns)))
@@ -230,10 +240,13 @@ def _corrected(program: Program, saved: SavedCalibration) -> Program:
     """Return the program with the dark levels and gains of a corrected calibration."""
     stated = saved.corrected.settings(saved.settings).readings
     count = len(stated.columns)
-    if len(program.steps[0].constants["place"]) != count:
+    first = program.steps[0].constants
+    if len(first["place"]) != count:
         raise NoCodeError("the old document's program is of other columns than its settings")
+    if any(np.shape(first[name]) != (count,) for name in ("low", "high")):
+        raise NoCodeError("the old document's program is damaged: limits of other columns")
     constants = {
-        **program.steps[0].constants,
+        **first,
         "dark": np.broadcast_to(np.asarray(stated.dark, dtype=np.float64), count).copy(),
         "gain": stated.sign * np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), count),
     }

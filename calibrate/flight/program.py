@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from algorithms.angles import separation_deg
 from algorithms.contract import Floats
 from calibrate.flight import runtime
+from calibrate.forms.units import KELVIN
 
 
 class NoCodeError(ValueError):
@@ -105,7 +107,11 @@ def run(
     return values, sun, status
 
 
-_DAMAGED = (KeyError, TypeError, ValueError, AttributeError)
+_DAMAGED = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
+#: Of a stored program: steps, numbers of a constant, and the largest whole one, which loops run to.
+_MOST_STEPS, _MOST_NUMBERS, _LARGEST_WHOLE = 20, 100_000, 500
+#: A constant's name, which stands in C as it is.
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 
 def stored_program(program: Program) -> dict[str, Any]:
@@ -141,7 +147,7 @@ def program_of(stored: Mapping[str, Any] | None) -> Program:
         steps = tuple(
             Step(
                 str(one["name"]),
-                {name: _constant(value) for name, value in one["constants"].items()},
+                {name: _constant(name, value) for name, value in one["constants"].items()},
                 int(one["operations"]),
                 int(one["calls"]),
             )
@@ -152,22 +158,38 @@ def program_of(stored: Mapping[str, Any] | None) -> Program:
         columns = (*stored["columns"], *([thermometer.column] if thermometer else ()))
         if isinstance(stored["columns"], str) or not all(isinstance(c, str) for c in columns):
             raise TypeError(f"expected names of columns, got {stored['columns']!r:.60}")
-        made = Program(tuple(stored["columns"]), steps, thermometer, str(stored["words"]))
+        if thermometer and (thermometer.scale, thermometer.offset) != KELVIN[thermometer.unit]:
+            raise ValueError(f"expected the scale and offset of {thermometer.unit}")
+        if not stored["words"].isprintable():
+            raise ValueError(f"expected words, got {stored['words']!a:.60}")
+        made = Program(tuple(stored["columns"]), steps, thermometer, stored["words"])
     except _DAMAGED as error:
         raise NoCodeError(f"the old document's program is damaged: {error}") from error
     unknown = [step.name for step in steps if step.name not in step_functions()]
-    if unknown or not steps or steps[0].name != "readings":
-        raise NoCodeError(f"the old document's program is damaged: steps {unknown or 'missing'}")
+    if unknown or not 0 < len(steps) <= _MOST_STEPS or steps[0].name != "readings":
+        raise NoCodeError(
+            f"the old document's program is damaged: steps {unknown or 'missing'!r:.60}"
+        )
     places = np.asarray(steps[0].constants.get("place", -1))
-    if places.dtype.kind != "i" or not np.isin(places, np.arange(len(made.columns))).all():
+    if places.dtype.kind != "i" or sorted(places.flat) != list(range(len(made.columns))):
         raise NoCodeError(
             f"the old document's program is damaged: it has {len(made.columns)} columns"
         )
     return made
 
 
-def _constant(value: Any) -> Any:
-    return np.asarray(value) if isinstance(value, list) else value
+def _constant(name: str, value: Any) -> Any:
+    """Return a constant; ValueError for what is no number of one, or a name that is none in C."""
+    found = np.asarray(value)
+    whole = found.dtype.kind == "i"
+    if (
+        not _NAME.fullmatch(name)
+        or not (whole or (found.dtype.kind == "f" and np.isfinite(found).all()))
+        or found.size > _MOST_NUMBERS
+        or (whole and np.abs(found).max(initial=0) > _LARGEST_WHOLE)
+    ):
+        raise ValueError(f"expected the constants of a step, got {name!a:.60}: {value!a:.60}")
+    return found if isinstance(value, list) else value
 
 
 #: Rows with an answer.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -123,7 +124,11 @@ def test_no_code_is_written_for_a_document_without_a_program(camera: Calibration
         {"columns": ["a", False]},
         {"columns": "six names"},
         {"columns": ["a"]},
+        {"columns": ["a", "b", "c", "d", "e", "f", "g"]},
         {"thermometer": {"column": 1, "unit": "K", "scale": 1.0, "offset": 0.0}},
+        {"thermometer": {"column": "t", "unit": "degC", "scale": 1.0, "offset": 0.0}},
+        {"words": "\x1b[2J"},
+        {"words": 3},
     ],
 )
 def test_a_damaged_program_is_refused(camera: Calibration, change: dict[str, Any]) -> None:
@@ -133,6 +138,49 @@ def test_a_damaged_program_is_refused(camera: Calibration, change: dict[str, Any
     stored["steps"][0]["constants"]["place"] = [0.0] * 6
     with pytest.raises(NoCodeError, match="damaged"):
         program_of(stored)
+
+
+def test_a_program_that_would_write_statements_of_its_own_is_refused(camera: Calibration) -> None:
+    """Names of constants stand in C, and a unit in Python, as the document has them."""
+    stored = stored_program(flight_code(SENSORS["six faces"].calibrated(camera)).program)
+    statement = "x[1] = { 0 }; void own(void) { system(NULL); } static const int y"
+    stored["steps"][0]["constants"][statement] = [1.0]
+    with pytest.raises(NoCodeError, match="damaged: expected the constants of a step"):
+        program_of(stored)
+    del stored["steps"][0]["constants"][statement]
+    program_of(stored)
+    unit = '""" and print("of its own") or """'
+    warm = {"column": "t", "unit": unit, "scale": 1.0, "offset": 0.0}
+    with pytest.raises(NoCodeError, match=r"damaged: .* and print"):
+        program_of({**stored, "thermometer": warm})
+
+
+@pytest.mark.parametrize(
+    "value", ["1.0", None, True, 10**9, 2**70, [1.0, "2"], [[1.0], [2.0, 3.0]]]
+)
+def test_a_constant_that_is_no_number_or_a_loop_without_end_is_refused(
+    camera: Calibration, value: Any
+) -> None:
+    stored = stored_program(flight_code(SENSORS["six faces"].calibrated(camera)).program)
+    stored["steps"][-1]["constants"]["steps"] = value
+    with pytest.raises(NoCodeError, match="damaged"):
+        program_of(stored)
+
+
+@pytest.mark.parametrize("at", [0, -1])
+def test_constants_that_do_not_fit_each_other_make_no_code(camera: Calibration, at: int) -> None:
+    """Lost, or one of their rows: they are told, not run into."""
+    saved = corrected("six faces", camera)
+    _, read = poses("six faces", saved, 6)
+    for name in saved.document["flight"]["steps"][at]["constants"]:
+        held = json.loads(json.dumps(saved.document))
+        made = held["flight"]["steps"][at]["constants"]
+        made[name] = made[name][:-1] if isinstance(made[name], list) else [1.0, 2.0]
+        with suppress(NoCodeError):  # one that Python does not read
+            corrected_code(replace(saved, document=held), read).files("s", {}, "")
+        del made[name]
+        with suppress(NoCodeError):
+            corrected_code(replace(saved, document=held), read).files("s", {}, "")
 
 
 def test_a_correction_of_a_correction_is_in_the_code(camera: Calibration, tmp_path: Path) -> None:
