@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from calibrate.documents import (
     SavedCalibration,
     document,
     of_document,
+    text_of,
     versions,
     with_correction,
 )
@@ -114,7 +114,7 @@ def _with_code(
     tell: Callable[[str], None],
 ) -> tuple[dict[str, str], str]:
     """Return the texts of a document and its code, and what is said of the code."""
-    made = {f"{prefix}.json": json.dumps(held, indent=1, allow_nan=False) + "\n"}
+    made = {f"{prefix}.json": text_of(held)}
     if isinstance(code, NoCodeError):
         made[f"{prefix}_no_code.txt"] = f"No code was written: {code}.\n"
         tell(f"none: {code}")

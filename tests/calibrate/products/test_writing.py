@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from api.cli.commands.calibrate import app
 from api.cli.wrong_call import WrongCallError
 from calibrate import calibration, products
 from calibrate.calibration import Calibration
+from calibrate.documents import text_of
 from calibrate.products import write_products, write_set
 from calibrate.report.page import Asked
 
@@ -80,3 +82,13 @@ def test_the_exit_code_says_whether_requirements_are_met(
     shown = CliRunner().invoke(app, [*told, "--require", "1arcsec@rms"], standalone_mode=False)
     assert shown.return_value == 3
     assert "requirement 1arcsec@rms: not met - " in shown.output
+
+
+def test_a_long_document_is_written_without_the_time_that_indenting_takes() -> None:
+    """Ten times that of writing: 4 s of a forged document of 6 MB."""
+    short, long = {"a": [1.5, None], "b": "\u00b5"}, {"a": list(range(200_000)), "b": 2.5e-7}
+    assert text_of(short) == '{\n "a": [\n  1.5,\n  null\n ],\n "b": "\\u00b5"\n}\n'
+    assert text_of(long).count("\n") == 1
+    assert json.loads(text_of(long)) == long
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        text_of({"a": [float("nan")]})
