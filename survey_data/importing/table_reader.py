@@ -21,6 +21,8 @@ from survey_data.problems import SurveyImportError
 
 #: What the parts of a workbook may unpack to, together.
 LARGEST_UNPACKED = 20_000_000
+#: Parts of a workbook, of which each sheet is one: a millisecond each.
+_MOST_PARTS = 1000
 LARGEST_ROWS = 20_000
 LARGEST_CELLS = 300_000
 LONGEST_CELL = 32_767  # Excel's own limit
@@ -92,6 +94,8 @@ def _read_workbook(name: str, data: bytes, wanted: str | None) -> list[Row]:
 
 def _require_size(name: str, archive: zipfile.ZipFile) -> None:
     """Refuse an archive that unpacks to too much; zipfile unpacks no more than the stated size."""
+    if len(archive.infolist()) > _MOST_PARTS:
+        raise SurveyImportError(f"{name} has more than {_MOST_PARTS} parts, such as sheets")
     if sum(member.file_size for member in archive.infolist()) > LARGEST_UNPACKED:
         raise SurveyImportError(f"{name} unpacks to more than {LARGEST_UNPACKED} bytes")
 

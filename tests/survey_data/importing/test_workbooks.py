@@ -73,6 +73,16 @@ def test_hostile_rows_are_refused(
     assert said in refusal(packed(tmp_path, parts, rows))
 
 
+def test_a_workbook_of_thousands_of_parts_is_refused_unread(
+    parts: Mapping[str, bytes], tmp_path: Path
+) -> None:
+    """Each sheet takes a millisecond, and thousands fit in a file that unpacks to little."""
+    many = {f"xl/worksheets/sheet{number}.xml": parts[SHEET] for number in range(2, 1002)}
+    assert "has more than 1000 parts, such as sheets" in refusal(
+        packed(tmp_path, {**parts, **many})
+    )
+
+
 def test_a_cell_longer_than_excel_s_own_limit_is_named(
     parts: Mapping[str, bytes], tmp_path: Path
 ) -> None:
