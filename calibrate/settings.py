@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime as dt
 import re
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -21,6 +20,7 @@ from pydantic import (
 
 from algorithms.contract import SensorGeometry
 from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
+from files.reading import parse_toml as toml_of
 from files.reading import read_text
 
 Kind = Literal["spot", "balance", "pair", "quadrants", "electrodes", "channels", "frames"]
@@ -336,7 +336,7 @@ def _faults(error: ValidationError) -> list[str]:
     for fault in error.errors():
         # a place that may hold one of several kinds is told once for each
         words = [
-            str(part)
+            str(part)[:60]
             for part in fault["loc"]
             if isinstance(part, int) or re.fullmatch(r"[A-Za-z_]\w*", part)
         ]
@@ -360,7 +360,7 @@ def read_settings(path: Path) -> Settings:
 def parse_toml(text: str, source: str) -> dict[str, Any]:
     """Return TOML text as plain data; SettingsError where it is none."""
     try:
-        return tomllib.loads(text)
+        return toml_of(text)
     except RecursionError:
         raise SettingsError(f"{source}: brackets stand too deep in each other") from None
     except ValueError as error:  # numbers of thousands of digits, too
@@ -368,5 +368,8 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # a number of thousands of digits, tables in each other
+        text = f"a long {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

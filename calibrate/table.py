@@ -65,7 +65,8 @@ class Table:
             near = nearest_name(name, self.columns)
             hint = f"; did you mean {near!r}?" if near else ""
             raise TableError(
-                f"{self.source}: no column {name!r}{hint} (there are {', '.join(self.columns)})"
+                f"{self.source}: no column {name!r:.60}{hint} "
+                f"(there are {', '.join(self.columns):.1000})"
             )
         if name in self.unread:
             row, cell = self.unread[name]

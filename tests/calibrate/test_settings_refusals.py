@@ -62,11 +62,25 @@ def test_a_setting_out_of_range_is_refused_by_its_name(place: str, value: Any, s
 
 
 @pytest.mark.parametrize(
-    "text", ["shift = " + "1" * 19_000, "apply = " + 50_000 * "[", 'source = "\\q"']
+    "text",
+    [
+        *("shift = " + "1" * 19_000, "apply = " + 50_000 * "[", 'source = "\\q"'),
+        *("a." * 9_000 + "a = 1", "[" + "'a' . " * 9_000 + "a]", '"a b".' * 20 + "a = 1"),
+    ],
 )
 def test_toml_that_nobody_can_read_is_refused_in_a_sentence(text: str) -> None:
     with pytest.raises(SettingsError, match=r"^a\.toml: .{10,200}$"):
         parse_toml(text, "a.toml")
+
+
+def test_a_value_or_name_that_cannot_be_shown_whole_is_cut() -> None:
+    deep: Any = 1
+    for _ in range(3000):
+        deep = [deep]
+    for value, said in ((16**5000, "got a long int"), (deep, "got a long list"), ("x" * 99, "...")):
+        stated = {"readings": SPOT, "direction": VECTOR, "k" * 9000: value}
+        with pytest.raises(SettingsError, match=rf"^a\.toml: k{{60}}: .{{10,110}}{said}$"):
+            parse_settings(stated, "a.toml")
 
 
 def test_every_fault_is_named_on_a_line_of_its_own_and_long_values_are_cut() -> None:
