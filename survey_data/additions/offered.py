@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from pydantic import (
     field_validator,
 )
 
+from files.reading import parse_toml as toml_of
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import FORBIDDEN
 from survey_data.importing.writing import offered_text
@@ -35,7 +35,8 @@ Row: TypeAlias = Mapping[str, str]
 Place: TypeAlias = tuple[str | int, ...]
 """Keys and positions that lead to a value, such as ``("model", 0, "basis")``."""
 
-_MOST_BYTES = 1_000_000
+#: Bytes of a file, and its keys, values of a list and tables: each may be a fault, with its words.
+_MOST_BYTES, _MOST_KEYS = 1_000_000, 2000
 _LONGEST, _LARGEST = 5000, 1e15
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:\s*)", re.IGNORECASE)
 #: Note of a role whose file says nothing of why; the table of roles has one in every row.
@@ -94,7 +95,7 @@ def parse_toml(text: str, name: str) -> TomlDocument:
     """Read the text of a TOML file; raises as `read_toml` does."""
     text = text.replace("\r\n", "\n")
     try:
-        return TomlDocument(name, tomllib.loads(text), _lines(text))
+        return TomlDocument(name, toml_of(text), _lines(text))
     except ValueError as error:  # tomllib's own, and a number of too many digits
         said = _SYNTAX.match(str(error))
         line = None if said is None else int(said[2] or text.count("\n") + 1)
@@ -235,15 +236,21 @@ def read_addition(document: TomlDocument, directory: Path = DATA_DIRECTORY) -> A
     Raises
     ------
     FaultsError
-        Names every fault with its line: those of the form, or else those of the content.
+        Names every fault with its line: those of the form, or else those of the content; of a
+        file with more keys than a study may have that alone.
     """
+    lists = [each for each in document.values.values() if isinstance(each, list)]
+    inner = [1 + (len(one) if isinstance(one, dict) else 0) for each in lists for one in each]
+    if (keys := len(document.values) + sum(inner)) > _MOST_KEYS:
+        message = f"expected at most {_MOST_KEYS} keys, tables and names; got {keys}"
+        raise FaultsError(document.name, [Fault(None, message)])
     rows = read_table_records(directory, "attribute_definitions").rows
     complete = {cells[0]: cells[4] == "true" for _, cells in rows}
     faults = []
     for name in document.values:
         known = [*OfferedStudy.model_fields, *complete]
         if name not in known:
-            message = f"unknown key {name!r}: {one_of(name, known)}"
+            message = f"unknown key {name!r:.60}: {one_of(name, known)}"
             faults.append(Fault(document.line((name,)), message))
     values = {name: each for name, each in document.values.items() if name in known}
     try:
@@ -263,7 +270,7 @@ def _fault(document: TomlDocument, error: Mapping[str, Any]) -> Fault:
     message = f"{place[-1]}: {error.get('ctx', {}).get('error', error['msg'])}"
     if kind == "extra_forbidden":
         model = Sensor if place[0] == "architecture" else Value
-        message = f"unknown key {place[-1]!r}: {one_of(place[-1], model.model_fields)}"
+        message = f"unknown key {place[-1]!r:.60}: {one_of(place[-1], model.model_fields)}"
     elif kind in ("list_type", "model_type"):
         message = f"{place[0]}: expected tables [[{place[0]}]], one a value"
     elif kind == "bool_type":

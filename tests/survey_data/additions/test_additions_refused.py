@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from survey_data.additions.offered import parse_toml, read_addition
+from survey_data.additions.offered import FaultsError, parse_toml, read_addition
 from survey_data.additions.writing import (
     add_study,
     read_publications,
@@ -96,3 +96,26 @@ def publications_of(folder: Path, text: str, suffix: str) -> list[dict[str, str]
     path = folder / f"refs.{suffix}"
     path.write_text(text, encoding="utf-8")
     return list(read_publications(path))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        STUDY + '[[model]]\nvalue = "DNN"\n' * 3000,
+        "".join(f"k{at} = 1\n" for at in range(3000)) + STUDY,
+        STUDY.replace('"Jane Doe"', ", ".join(f'"J. Doe {at}"' for at in range(3000))),
+        STUDY + "[[mask]]\n" + "".join(f"k{at} = 1\n" for at in range(3000)),
+    ],
+)
+def test_a_file_of_thousands_of_keys_is_refused_in_one_line(text: str) -> None:
+    """Each of them would be a fault with the nearest of all words: 30 s of a file of 1 MB."""
+    said = r"^a\.toml: expected at most 2000 keys, tables and names; got [36]\d{3}$"
+    with pytest.raises(FaultsError, match=said):
+        read_addition(parse_toml(text, "a.toml"))
+
+
+def test_a_long_key_is_cut_where_it_is_named() -> None:
+    for text in ("k" * 9000 + " = 1\n" + STUDY, STUDY + "[[mask]]\n" + "k" * 9000 + " = 1\n"):
+        with pytest.raises(FaultsError) as error:
+            read_addition(parse_toml(text, "a.toml"))
+        assert max(map(len, str(error.value).splitlines())) < 500
