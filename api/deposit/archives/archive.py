@@ -25,6 +25,8 @@ from api.metadata.identity import version
 
 #: How often a request is tried, and the longest pause that a server may ask for, in seconds.
 TRIES, PATIENCE = 6, 900.0
+#: Bytes of an answer, and pieces in which it comes: a thousand files take a tenth of it.
+_LARGEST, _MOST_PIECES = 4_000_000, 20_000
 _ALL = "/api/records"
 _IDENTIFIER = r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$"
 #: Without what a terminal would act on, and letters that turn the direction of reading.
@@ -159,6 +161,7 @@ class Archive:
     ) -> None:
         self.server = server
         self._token = token.get_secret_value()
+        self._timeout = timeout
         self._http = httpx.Client(
             base_url=server.address,
             headers={
@@ -278,22 +281,38 @@ class Archive:
     def _do(self, method: str, where: str, **body: Any) -> bytes:
         """Ask once; return the body of the answer."""
         try:
-            answer = self._http.request(method, where, **body)
+            with self._http.stream(method, where, **body) as answer:
+                content = self._content(f"{method} {where}", answer)
         except (httpx.HTTPError, httpx.InvalidURL) as error:
             why = str(error) or type(error).__name__
             message = self._shown(f"{method} {where}: no whole answer ({why})")
             raise MomentaryError(message) from error
         if not answer.is_success:
-            raise self._refusal(f"{method} {where}", answer)
-        return answer.content
+            raise self._refusal(f"{method} {where}", answer, content)
+        return content
 
-    def _refusal(self, what: str, answer: httpx.Response) -> ArchiveError:
+    def _content(self, what: str, answer: httpx.Response) -> bytes:
+        """Return the body of an answer: as it is sent, not unpacked, and not without end."""
+        coding = answer.headers.get("Content-Encoding", "identity")
+        if coding.strip().lower() not in {"", "identity"}:
+            raise ArchiveError(self._shown(f"{what}: the answer is packed ({coding:.40})"))
+        content, until = bytearray(), time.monotonic() + self._timeout
+        for number, piece in enumerate(answer.iter_raw()):
+            content += piece
+            if len(content) > _LARGEST or number >= _MOST_PIECES:
+                said = f"{_LARGEST} bytes, or comes in more than {_MOST_PIECES} pieces"
+                raise ArchiveError(self._shown(f"{what}: the answer is longer than {said}"))
+            if time.monotonic() > until:
+                raise MomentaryError(self._shown(f"{what}: no whole answer (it comes too slowly)"))
+        return bytes(content)
+
+    def _refusal(self, what: str, answer: httpx.Response, content: bytes) -> ArchiveError:
         status = 302 if answer.has_redirect_location else answer.status_code
         advice = _ADVICE.get(status, "").format(
             variable=self.server.variable, address=self.server.address
         )
         json = "json" in answer.headers.get("Content-Type", "")
-        reason = answer.text[:2000] if json else ""
+        reason = content[:2000].decode("utf-8", "replace") if json else ""
         parts = (f"{what}: {answer.status_code} {answer.reason_phrase}", advice, reason)
         message = self._shown("; ".join(part for part in parts if part))
         after = answer.headers.get("Retry-After", "")

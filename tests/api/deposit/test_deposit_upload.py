@@ -174,6 +174,44 @@ def test_any_answer_ends_in_one_sentence(journey, step, name):
     assert not journey.archive.records
 
 
+ENDLESS = b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n"
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        (answer(gzip.compress(bytes(50 << 20)), "Content-Encoding: gzip"), "is packed"),
+        (answer(b" " * 5_000_000), "is longer than 4000000 bytes"),
+        (answer(b" " * 5_000_000).replace(b"200 OK", b"400 No"), "is longer than 4000000 bytes"),
+        (ENDLESS + b"1\r\n \r\n" * 25_000, "in more than 20000 pieces"),
+    ],
+)
+def test_an_answer_is_neither_unpacked_nor_read_without_end(journey, said, why):
+    """2 GB of spaces are 2 MB packed, and took 3 GB here."""
+    journey.archive.fault("create", said, 99)
+    with pytest.raises(ArchiveError, match=why):
+        journey.upload()
+    assert journey.pauses == []
+
+
+def test_an_answer_that_drips_is_given_up(journey, monkeypatch):
+    clock = iter(range(0, 10**6, 5))
+    monkeypatch.setattr("api.deposit.archives.archive.time.monotonic", lambda: next(clock))
+    journey.archive.fault("create", ENDLESS + b"1\r\n \r\n" * 9, 99)
+    with pytest.raises(ArchiveError, match="it comes too slowly"):
+        journey.upload()
+    assert journey.pauses == [1, 2, 4, 8, 16]
+
+
+@pytest.mark.parametrize("charset", ["idna", "rot13", "zlib", "utf-7"])
+def test_the_charset_of_a_refusal_is_not_believed(journey, charset):
+    """Some of Python's encodings are of no text, and end in errors of their own."""
+    said = answer(b"\xffno").replace(b"/json", f"/json; charset={charset}".encode())
+    journey.archive.fault("create", said.replace(b"200 OK", b"400 No"))
+    with pytest.raises(RefusedError, match=r"400 No.*no$"):
+        journey.upload()
+
+
 @pytest.mark.parametrize(
     ("people", "why"),
     [
