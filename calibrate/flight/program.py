@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from typing import Any
 
 import numpy as np
@@ -158,8 +158,9 @@ def program_of(stored: Mapping[str, Any] | None) -> Program:
         columns = (*stored["columns"], *([thermometer.column] if thermometer else ()))
         if isinstance(stored["columns"], str) or not all(isinstance(c, str) for c in columns):
             raise TypeError(f"expected names of columns, got {stored['columns']!r:.60}")
-        if thermometer and (thermometer.scale, thermometer.offset) != KELVIN[thermometer.unit]:
-            raise ValueError(f"expected the scale and offset of {thermometer.unit}")
+        known = [(unit, *numbers) for unit, numbers in KELVIN.items()]
+        if thermometer and astuple(thermometer)[1:] not in known:
+            raise ValueError(f"expected a unit with its scale and offset, got {measured!a:.90}")
         if not stored["words"].isprintable():
             raise ValueError(f"expected words, got {stored['words']!a:.60}")
         made = Program(tuple(stored["columns"]), steps, thermometer, stored["words"])
