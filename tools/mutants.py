@@ -134,16 +134,25 @@ def _measured() -> CoverageData:
 
 @cache
 def _ran(file: str) -> Mapping[int, list[str]]:
-    """Return the tests that ran each line of a file's functions; what runs at import is of none."""
+    """Return the tests that ran each line of a file's functions; what runs at import is of none.
+
+    Where a fixture ran it, the whole file of the first test that asked for the fixture.
+    """
     within: set[int] = set()
     for node in _statements(file):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             within.update(range(node.body[0].lineno, (node.end_lineno or node.lineno) + 1))
     return {
-        line: [name.rpartition("|")[0] for name in names if name]
+        line: [_asked(name) for name in names if name]
         for line, names in _measured().contexts_by_lineno(str(ROOT / file)).items()
         if line in within
     }
+
+
+def _asked(context: str) -> str:
+    """Return a test, or its file where its fixtures ran: they may be shared."""
+    test, _, phase = context.rpartition("|")
+    return test if phase == "run" else test.partition("::")[0]
 
 
 @cache

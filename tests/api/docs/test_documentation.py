@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from api.docs import documentation
+from api.cli.asking import knowledge
+from api.docs import documentation, front
 from api.docs.documentation import regenerate, renew_parts
+from benchmark.leaderboard.architectures import architectures
 
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
@@ -45,3 +47,15 @@ def test_a_part_that_is_missing_unknown_or_there_twice_is_named(
 ) -> None:
     with pytest.raises(ValueError, match=r"page\.md: expected"):
         renew_parts("page.md", text, {name: lambda: "" for name in parts})
+
+
+def test_the_front_picture_has_a_line_for_each_architecture_with_an_error() -> None:
+    rows = architectures(knowledge().measurements.leaderboard)
+    (axes,) = front.figure().axes
+    ends = [line.get_xdata() for line in axes.lines if line.get_linestyle() == "-"]
+    flown = [row for row in rows if row["own_error_deg"] is not None]
+    assert len(flown) > 20
+    assert sorted(map(tuple, ends)) == sorted(
+        (one["bound_deg"], one["own_error_deg"], one["flight_error_deg"] or one["own_error_deg"])
+        for one in flown
+    )

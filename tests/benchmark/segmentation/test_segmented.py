@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from matplotlib.figure import Figure
 
 from benchmark.directions.segmented import segmented
 from benchmark.segmentation.frames import FAULTS, UNANSWERABLE
+from benchmark.segmentation.plots import _board
 from benchmark.segmentation.worth import member, pooled, worths
 
 UNITS = [0, 1, 2, 3, 4, 5, 7, 9]
@@ -75,3 +77,16 @@ def test_wins_of_a_board_that_answers_two_suns_are_named_as_not_counted() -> Non
     text = segmented([row(60, STEADY, 5, "open-minded"), row(60, STEADY)]).text
     assert "6 do not count" in text
     assert "open-minded" in text
+
+
+def test_bars_are_shares_of_right_answers_up_and_of_wrong_ones_down() -> None:
+    board = row(60, STEADY)
+    axes = Figure().subplots()
+    _board(axes, board)
+    heights = [round(bar.get_height(), 6) for bar in axes.patches]
+    assert len(heights) == 4 * len(FAULTS)
+    per_fault = list(zip(*[iter(heights)] * 4, strict=True))
+    for fault, (bare, bare_wrong, masked, masked_wrong) in zip(FAULTS, per_fault, strict=True):
+        right = (0.0, 0.0) if fault in UNANSWERABLE else (0.6, sum(STEADY) / 800)
+        assert (bare, masked) == pytest.approx(right)
+        assert (bare_wrong, masked_wrong) == (0.0, 0.0)

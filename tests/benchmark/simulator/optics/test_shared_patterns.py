@@ -40,7 +40,6 @@ def seen(alpha: float, beta: float) -> Scene:
     return Scene(sun, np.ones(1), np.zeros(1))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("alpha", "beta"), [(0.0, 0.0), (17.0, -4.0), (-31.0, 38.0)])
 def test_a_pattern_shared_by_many_holes_is_that_of_each(alpha: float, beta: float) -> None:
     sensor = sensor_of(0.8)
@@ -80,7 +79,6 @@ def test_holes_further_off_than_the_masks_errors_are_refused() -> None:
         sensor.lit(seen(0.0, 0.0), pattern)
 
 
-@pytest.mark.slow
 def test_pixels_of_a_bound_are_all_that_a_step_lights() -> None:
     sensor = sensor_of(0.8, holes=3)
     scene, pattern = seen(41.0, -30.0), sensor.fixed_pattern("test")
