@@ -19,6 +19,7 @@ def median(frames: np.ndarray) -> np.ndarray:
     return np.median(frames, axis=(1, 2))
 
 
+@pytest.mark.slow  # diffraction is tabulated
 def test_at_strength_zero_every_fault_leaves_the_plain_frames(unit: FaultyUnit) -> None:
     plain = unit.taken(unit.scene(3, "a test"), "a test")
     for fault in FAULTS:
@@ -27,6 +28,7 @@ def test_at_strength_zero_every_fault_leaves_the_plain_frames(unit: FaultyUnit) 
         np.testing.assert_array_equal(struck.sun, plain.sun)
 
 
+@pytest.mark.slow  # diffraction is tabulated
 def test_stronger_faults_of_the_same_name_are_the_weaker_ones_and_more(unit: FaultyUnit) -> None:
     whole = unit.struck("glare", 0.0, 3, "a test").corrected
     little, much = (unit.struck("glare", s, 3, "a test").corrected - whole for s in (0.1, 0.2))
@@ -38,6 +40,7 @@ def test_stronger_faults_of_the_same_name_are_the_weaker_ones_and_more(unit: Fau
     assert not ((few < whole - 100.0) & (many > whole - 50.0)).any()  # no hole is cleaned again
 
 
+@pytest.mark.slow  # diffraction is tabulated
 def test_a_laser_adds_spots_in_proportion_to_its_light(unit: FaultyUnit) -> None:
     whole = unit.struck("laser", 0.0, 3, "a test").corrected
     dim, bright = (
