@@ -21,6 +21,8 @@ from benchmark.learned.network import Network
 from benchmark.learned.networks import NETWORKS
 from benchmark.learned.plans import CENTRES, SEEDS
 from benchmark.learned.training import LearnExtraMissingError, torch
+from benchmark.learned_faults import training as fault_training
+from benchmark.learned_faults.deep import WEIGHTS
 from benchmark.processes import call_to_end
 from benchmark.running.workers import as_completed
 from benchmark.segmentation import training as mask_training
@@ -34,7 +36,11 @@ def trainers() -> Mapping[str, Trainer]:
     """Return what trains each group of networks, by its name."""
     centres = {f"centres-{name}": partial(_centres, name) for name in CENTRES}
     masks = {f"segmentation-{board}": partial(_masks, board) for board in mask_training.FRAMES}
-    return {**centres, "sscnn": _sparse, **masks}
+    return {**centres, "sscnn": _sparse, "sscnn-faults": _faults, **masks}
+
+
+def _faults() -> dict[Path, Network]:
+    return {WEIGHTS: fault_training.trained_anew()}
 
 
 def _masks(board: str) -> dict[Path, Network]:
