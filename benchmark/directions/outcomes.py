@@ -25,12 +25,21 @@ Row = Mapping[str, Any]
 TRIALS: Mapping[str, Callable[[Sequence[Row]], Trial]] = MappingProxyType(
     {"spoofing": laser, "learned": learned, "segmentation": segmented}
 )
+#: Experiments whose rows are told beside those of one that decides, by its name.
+_BESIDE: Mapping[str, tuple[str, ...]] = MappingProxyType({"learned": ("learned_faults",)})
 
 
 def read_trials(directory: Path | str = PUBLISHED) -> dict[str, list[Row]]:
     """Return the rows of every experiment that decides a direction, by its name."""
     kinds = recorded_experiments()
-    return {name: list(kinds[name].record.read(directory).values()) for name in TRIALS}
+    return {
+        name: [
+            row
+            for of in (name, *_BESIDE.get(name, ()))
+            for row in kinds[of].record.read(directory).values()
+        ]
+        for name in TRIALS
+    }
 
 
 def outcomes(
