@@ -127,9 +127,9 @@ class DeepReader:
 
 
 def shown(corrected: Any) -> tuple[Floats32, Floats]:
-    """Return what a network is shown (N, 1, 64, 64) of frames: above their median, 1 at most.
+    """Return what a network is shown (N, 1, 64, 64) of frames, and the brightest mean (N,) of each.
 
-    And the brightest mean (N,) of each.
+    Light above the frame's median, over the brightest mean of 3 by 3 averaged pixels.
     """
     frames = np.asarray(corrected, dtype=np.float32)
     found = windows(LOOK, frames - np.median(frames[:, ::4, ::4], axis=(1, 2), keepdims=True))
