@@ -28,6 +28,17 @@ def test_every_compensation_goes_ahead_of_something_that_there_is():
         assert compensation.about.ahead_of, f"{name} is never measured"
 
 
+def test_a_chain_has_a_new_version_where_any_part_has_one():
+    class Newer(Refraction):
+        about = replace(Refraction.about, version=3)
+
+    class Newest(StandardProjection):
+        about = replace(StandardProjection.about, version=5)
+
+    assert Chain((Newer,), Newest).about.version == 7
+    assert Chain((Newer, Newer), Newest).about.version == 9
+
+
 def test_a_chain_is_made_for_a_sensor_and_answers_as_its_parts_do(geometry, field):
     design = replace(geometry, cover_glass=((0.5, 1.5),))
     spots = 200.0 + 150.0 * field[:, :2] / field[:, 2:]

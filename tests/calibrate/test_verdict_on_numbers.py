@@ -11,7 +11,7 @@ from samples import samples
 
 from algorithms.angles import separation_deg
 from calibrate.halves import Halves
-from calibrate.verdict import Pattern, judge, next_poses, patterns_in
+from calibrate.verdict import Pattern, _pattern, judge, next_poses, patterns_in
 
 NONE = np.empty((0, 3))
 SMOOTH = (Pattern("the direction: a smooth pattern over the field", 0.6, 1e-9),)
@@ -43,6 +43,18 @@ def test_the_word_follows_from_the_numbers(
 
 def normal(count: int) -> np.ndarray:
     return np.random.default_rng(3).normal(0.0, 1e-3, (count, 3))
+
+
+def test_a_pattern_counts_beyond_what_chance_explains() -> None:
+    """One column of a straight line explains 1 of 10 degrees of freedom of errors at random."""
+    line = np.linspace(-1.0, 1.0, 11)
+    whole = _pattern("a line", line[:, None], np.column_stack([line, -2.0 * line]))
+    assert whole is not None
+    assert whole.share == pytest.approx(0.9)
+    bent = line**2  # orthogonal to the line: it explains nothing
+    none = _pattern("a line", line[:, None], np.column_stack([bent, bent]))
+    assert none is not None
+    assert none.share == 0.0
 
 
 def test_a_run_with_an_offset_of_its_own_is_the_pattern() -> None:

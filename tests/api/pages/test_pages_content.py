@@ -10,6 +10,7 @@ import pytest
 
 from api.pages.numbers import degrees, number, percent, plural, times
 from api.pages.terms import display_text, explain_terms
+from api.service.knowledge import Knowledge
 from tests.api.conftest import Client
 
 TAGS = re.compile(r"<(script|style|template|noscript)\b.*?</\1>|<[^>]+>", re.DOTALL)
@@ -98,6 +99,17 @@ def test_the_scatter_has_a_point_for_every_judged_error_and_no_other(
         assert shown == sorted(m[member] for m in every if m[member])
         said = [mark["text"] for trace in traces for mark in trace.get("customdata", ())]
         assert all(f": {words} " in text for text in said)
+
+
+@pytest.mark.parametrize("name", ["cmos-slit", "qpd-single-aperture"])
+def test_a_data_set_shows_facts_of_its_own_board(
+    atlas: Client, knowledge: Knowledge, name: str
+) -> None:
+    boards = {board["name"]: board for board in knowledge.measurements.leaderboard["datasets"]}
+    board = boards[name]
+    page = text_of(atlas.get(f"/datasets/{name}").text)
+    assert f"adds an error of {degrees(board['bench_deg'])}" in page
+    assert f"through its calibration it is {degrees(board['bound_unit_deg'])}" in page
 
 
 def test_a_data_set_says_which_future_directions_were_tried_on_it(atlas: Client) -> None:
