@@ -89,9 +89,22 @@ def test_numbers_are_read_as_python_reads_their_plain_spelling_alone() -> None:
         parse_integer("1.0")
 
 
-@pytest.mark.parametrize("part", ["a.", "'a b' . ", '"a" .', "1."])
+@pytest.mark.parametrize("part", ["a.", "'a b' . ", '"a" .', "1.", r'"\"" .'])
 def test_a_key_of_toml_of_many_parts_is_refused_and_one_of_few_is_read(part: str) -> None:
     """Reading one takes the square of its parts: 8 s and 1.6 GB of 20,000."""
     assert parse_toml(f"{part * 19}z = 1\n")
     with pytest.raises(ValueError, match=r"at most 20 parts \(at line 2, column 1\)"):
         parse_toml(f"x = 1\n[{part * 20}z]\n")
+
+
+@pytest.mark.parametrize("quote", ['"', "'", '"' * 3, "'" * 3])
+def test_dots_in_texts_and_comments_of_toml_are_no_parts_of_a_key(quote: str) -> None:
+    dots = "a." * 40
+    assert parse_toml(f"x = {quote}{dots}{quote} # {dots}{quote}\ny = 2\n") == {"x": dots, "y": 2}
+
+
+@pytest.mark.parametrize("torn", ['"\\', '"' * 3 + "\\", "'" * 3 + "a'", "a."])
+def test_a_megabyte_of_torn_toml_is_refused(torn: str) -> None:
+    """In one pass: looking for an end from every quote would take hours."""
+    with pytest.raises(ValueError, match=r"\(at "):
+        parse_toml(torn * 300_000)
