@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -23,6 +24,7 @@ from raw_sensors import (
 )
 
 from calibrate.flight.code import flight_code
+from calibrate.flight.program import program_of, stored_program
 
 DIGEST = "0123456789abcdef0123456789abcdef"
 #: A hundredth of the model's error is what code may add.
@@ -85,6 +87,13 @@ def test_python_answers_what_c_does(kind, written):
     assert np.allclose(said["angle_deg"][good], answers[good, 4:6], rtol=0, atol=1e-7)
     assert np.allclose(said["sigma_deg"][good], answers[good, 6:8], rtol=1e-4)
     assert not answers[~good, 1:].any()
+
+
+@pytest.mark.parametrize("kind", SENSORS)
+def test_a_program_is_read_back_as_it_was_kept(kind, written):
+    """What refuses forged programs refuses none of ours."""
+    _, code, _ = written(kind)
+    require_kept(code.program)
 
 
 @pytest.mark.parametrize("kind", SENSORS)
@@ -171,12 +180,20 @@ def test_angles_are_those_of_the_files_form(kind, angles, written):
     assert np.allclose(answers[:, 4:6], expected, rtol=0, atol=1e-5)
 
 
+def require_kept(program):
+    """A document keeps a program as JSON and gives it back, number by number."""
+    kept = stored_program(program)
+    back = stored_program(program_of(json.loads(json.dumps(kept))))
+    assert json.dumps(back, sort_keys=True) == json.dumps(kept, sort_keys=True)
+
+
 @pytest.mark.parametrize("name", OTHERS)
 def test_models_of_faces_are_emitted_themselves(name, camera, tmp_path):
     sensor = OTHERS[name]
     found = sensor.calibrated(camera)
     code = flight_code(found)
     assert not code.flagged
+    require_kept(code.program)
     (tmp_path / "ss.py").write_text(code.files("ss", {}, DIGEST)["ss.py"])
     made = module_of(tmp_path).solve(sensor.raw(3), sensor.celsius(3))
     model = sensor.answers(found.model, 3)
