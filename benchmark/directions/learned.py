@@ -10,14 +10,12 @@ from typing import Any
 from benchmark.directions.duels import Duel, judge, verdict
 from benchmark.directions.trials import Trial, not_tried
 from benchmark.learned.sparse_measure import PAPER_DEG
-from benchmark.learned_faults.curves import curve, logs
+from benchmark.learned_faults.curves import NONE_DEG, curve, logs
 
 Row = Mapping[str, Any]
 
 #: The way of reading that decides, and what it meets.
 _FIRST, _SECOND = "seed 0", "classical"
-#: An error that does not count, as it is answered too seldom, is as large as can be.
-_NONE_DEG = 180.0
 
 
 def learned(rows: Sequence[Row]) -> Trial:
@@ -42,7 +40,7 @@ def learned(rows: Sequence[Row]) -> Trial:
 
 
 def _errors(row: Row, way: str) -> list[float]:
-    return [_NONE_DEG if error is None else error for error in row["errors_deg"][way]]
+    return [NONE_DEG if error is None else error for error in row["errors_deg"][way]]
 
 
 def _met(row: Row) -> Duel:
@@ -139,4 +137,4 @@ def under_faults(rows: Sequence[Row]) -> str:
 
 
 def _size(row: Row, way: str, at: int) -> float:
-    return curve(row, way, "rms_deg")[at] or _NONE_DEG
+    return curve(row, way, "rms_deg")[at] or NONE_DEG

@@ -1,4 +1,4 @@
-"""What is read of the sparse network under faults, and what decides; written before any outcome.
+"""Rule by which the sparse network and a pipeline meet under faults, older than its outcomes.
 
 On `cmos-encoded` a sparse network (SSCNN) goes straight to two angles. It learns from units 20 to
 27 with the faults below in most frames; its settings are chosen on units 40 to 42; units 1 to 5

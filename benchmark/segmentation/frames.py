@@ -17,7 +17,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.spoofing.second_light import with_laser
 
-#: What is wrong with the frames of each fault; the first has nothing, the last two not one Sun.
+#: Disturbances that each fault puts into a frame. `clean` has none; the last two have not one Sun.
 FAULTS: Mapping[str, frozenset[str]] = {
     "clean": frozenset(),
     "glare": frozenset({"glare"}),
